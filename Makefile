@@ -1,0 +1,71 @@
+# A C++20 compiler and Python >= 3.10 with venv are all that is needed; everything else goes into .venv.
+PYTHON ?= python3
+VENV   := .venv
+BIN    := $(VENV)/bin
+BUILD  := build/Release
+SETUP  := $(VENV)/.ready
+CPP    := $(shell git ls-files '*.cpp' '*.hpp' 2>/dev/null)
+
+.PHONY: setup build demo test test-cpp test-python examples lint format stubs lock clean
+
+setup: $(SETUP)
+
+$(SETUP): requirements.lock
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/pip install --quiet --disable-pip-version-check -r requirements.lock
+	touch $@
+
+# Builds the C++ library and its Python extension and installs the package in editable mode.
+build: setup
+	$(BIN)/pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps \
+	  -C cmake.define.TOPE_BUILD_TESTS=$(or $(TESTS),OFF) -e .
+
+demo: build
+	$(BIN)/tope run scenarios/youbot_velocity.yaml --out runs/demo
+
+test:
+	$(MAKE) build TESTS=ON
+	$(MAKE) test-cpp test-python examples
+
+test-cpp:
+	$(BIN)/ctest --test-dir $(BUILD) --output-on-failure -j 2
+
+test-python:
+	$(BIN)/pytest
+
+examples:
+	@for example in examples/*.py; do echo $$example; $(BIN)/python $$example || exit 1; done
+
+# Two hundred goals, many out of reach, and a thousand random runs: figures of the README. Minutes.
+.PHONY: campaign-goals campaign-limits
+campaign-goals: build
+	$(BIN)/python bench/goals.py
+campaign-limits: build
+	$(BIN)/python bench/random_limits.py
+
+lint:
+	$(MAKE) build TESTS=ON
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/clang-format --dry-run -Werror $(CPP)
+	$(BIN)/python -m nanobind.stubgen -q -m tope._core -o $(BUILD)/_core.pyi
+	diff python/tope/_core.pyi $(BUILD)/_core.pyi  # stale? run: make stubs
+	git ls-files 'src/*.cpp' | xargs -P 2 -n 4 $(BIN)/clang-tidy --quiet --warnings-as-errors='*' -p $(BUILD)
+
+format:
+	$(BIN)/ruff check --fix-only .
+	$(BIN)/ruff format .
+	$(BIN)/clang-format -i $(CPP)
+
+stubs: build
+	$(BIN)/python -m nanobind.stubgen -q -m tope._core -o python/tope/_core.pyi
+
+# Renews the pinned versions from pyproject.toml.
+lock:
+	$(BIN)/pip install --quiet uv
+	$(BIN)/uv pip compile --universal --python-version 3.10 --all-extras --no-header --no-annotate --upgrade \
+	  pyproject.toml -o requirements.lock
+
+clean:
+	rm -rf $(VENV) build runs

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <tope/common/types.hpp>
+#include <tope/controller/options.hpp>
+#include <tope/controller/status.hpp>
+#include <tope/law/law.hpp>
+#include <tope/law/whitening.hpp>
+#include <tope/limit/conditions.hpp>
+#include <tope/robot/robot_terms.hpp>
+#include <tope/task/task.hpp>
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace tope {
+
+/// Names a task inside the controller that returned it.
+struct TaskHandle {
+  int id = -1;
+};
+
+/// How a task enters or leaves.
+struct TransitionOptions {
+  double over = 0.0;  ///< seconds from the next update; 0: at once
+};
+
+/// Turns the robot's state into a command that serves tasks in strict order of priority, keeps joint limits
+/// and bounds.
+///
+/// Building, add() and remove() allocate and throw; update() does neither. One controller per thread.
+class Controller {
+ public:
+  /// Takes a copy of the robot with its bounds as they are. Errors: ConfigError for bad options, or a safety
+  /// inequality that fails (unless options.limits.enforce_conditions is false).
+  Controller(const Robot& robot, const ControllerOptions& options);
+
+  /// Adds a copy of the task at a level >= 1; a lower number is a higher priority, equal numbers share a
+  /// level.
+  TaskHandle add(int level, const Task& task, const TransitionOptions& options = {});
+  /// Lets the task fade out. Errors: Error for an unknown handle.
+  void remove(TaskHandle handle, const TransitionOptions& options = {});
+
+  /// One cycle at state q (nq), v (nv) and time t [s]: writes the command u (nv). Never allocates, throws,
+  /// locks, prints or reads a clock. Bad input: u = 0, Event::bad_input, nothing changed inside.
+  const Status& update(const VectorArg& q, const VectorArg& v, double t, Eigen::Ref<Vector> u) noexcept;
+
+  const Status& status() const { return status_; }
+  /// How active each joint's upper and lower limit is, 0 to 1 (n).
+  const Vector& upper_activation() const { return upper_activation_; }
+  const Vector& lower_activation() const { return lower_activation_; }
+  /// The task as of the last update. Errors: Error for an unknown handle.
+  const Task& task(TaskHandle handle) const;
+  /// How far a task is present, 0 to 1.
+  double activation(TaskHandle handle) const;
+
+  const Robot& robot() const { return robot_; }
+  const ControllerOptions& options() const { return options_; }
+  const JointLimits& limits() const { return limits_; }
+  /// The sampled-time inequalities of this robot, method and period.
+  std::vector<Condition> conditions() const;
+
+ private:
+  struct Entry {
+    int id;
+    int level;
+    std::unique_ptr<Task> task;
+    double activation;
+    double from;        // activation when the transition began
+    double to;          // and when it ends
+    double over;        // seconds it takes
+    double start_time;  // NaN until the next update
+    void advance(double t);
+    bool gone() const { return activation == 0.0 && to == 0.0; }
+  };
+
+  const Entry& entry(TaskHandle handle) const;
+  void rebuild();
+  bool valid(const VectorArg& q, const VectorArg& v, double t, const Eigen::Ref<Vector>& u) const;
+  void fill_tasks(double t);
+  void fill_field();
+  void bound(Eigen::Ref<Vector> u);
+  void report(const Eigen::Ref<Vector>& u);
+
+  Robot robot_;
+  ControllerOptions options_;
+  RobotTerms terms_;
+  JointLimits limits_;
+  std::optional<PotentialField> field_;
+  Whitening whitening_;
+  std::vector<Entry> entries_;  // sorted by level
+  int next_id_ = 0;
+
+  Stack stack_;
+  std::size_t field_row_ = 0;           // index of the field's rows in the stack
+  std::vector<std::size_t> entry_row_;  // index of each entry's rows in the stack
+  std::optional<Law> law_;
+  Solution solution_;
+  Vector command_;
+  Vector limit_command_;
+  Vector upper_activation_;
+  Vector lower_activation_;
+  Status status_;
+};
+
+}  // namespace tope

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <tope/common/types.hpp>
+
+#include <vector>
+
+namespace tope {
+
+/// The rows of one task in whitened coordinates: A y = b.
+struct TaskRows {
+  int level = 1;            ///< 1 is the highest below the limits
+  double activation = 1.0;  ///< 0 absent, 1 complete, between while the task is inserted or removed
+  Matrix a;                 ///< A = Q L (m x n)
+  Vector b;                 ///< (m)
+};
+
+/// Everything a law sees at one instant: n unknowns y, limits on the motion T y (joint velocities or
+/// accelerations), and tasks in order of level. No robot in here.
+struct Stack {
+  explicit Stack(int n);
+
+  int size() const { return static_cast<int>(motion.rows()); }
+
+  Matrix motion;            ///< T (n x n): y to the bounded motion, one row a joint
+  Vector limit_activation;  ///< xi (n), of the limit row of each joint
+  Vector limit_target;      ///< motion asked for by the limit row where it is active (n)
+  Vector motion_lower;      ///< bounds of the motion (n), for the unilateral law
+  Vector motion_upper;
+  std::vector<TaskRows> tasks;  ///< sorted by level
+
+  /// Largest number of rows that one level can have.
+  int max_level_rows() const;
+};
+
+/// Which limit rows and tasks take part: one element S of the family that the blends run over.
+struct Selection {
+  explicit Selection(const Stack& stack);
+
+  std::vector<char> limits;  ///< one a joint
+  std::vector<char> tasks;   ///< one a task
+};
+
+/// What a law returns.
+struct Solution {
+  explicit Solution(int n) : y(Vector::Zero(n)), y_limits(Vector::Zero(n)) {}
+
+  Vector y;               ///< whitened command (n)
+  Vector y_limits;        ///< its part that serves the limits alone (n)
+  bool singular = false;  ///< a task direction was damped
+  bool cut_off = false;   ///< an iteration or size bound was reached; limits hold, tasks are served less well
+  int laws = 0;           ///< laws evaluated
+
+  void set_zero();
+  /// Adds weight times another solution; flags and counts accumulate.
+  void add(double weight, const Solution& other);
+};
+
+}  // namespace tope

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <tope/law/limit_method.hpp>
+#include <tope/limit/joint_limits.hpp>
+
+#include <string>
+#include <vector>
+
+namespace tope {
+
+/// One inequality that the limit guarantee needs when the loop runs at discrete times.
+struct Condition {
+  std::string name;        ///< short, stable
+  std::string joint;       ///< empty when it concerns all
+  std::string expression;  ///< in symbols
+  double value = 0.0;      ///< left-hand side
+  double bound = 0.0;      ///< holds when value <= bound
+  std::string advice;      ///< what would satisfy it, in the user's terms
+
+  double margin() const { return bound - value; }
+  bool holds() const { return value <= bound; }
+};
+
+/// The inequalities of velocity mode at period dt [s] for a method; none for a method that promises nothing.
+/// `headroom` is the unilateral law's.
+std::vector<Condition> velocity_conditions(const Robot& robot, const JointLimits& limits, LimitMethod method,
+                                           double headroom, double dt);
+
+}  // namespace tope

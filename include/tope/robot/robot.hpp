@@ -1,0 +1,91 @@
+#pragma once
+
+#include <tope/common/types.hpp>
+#include <tope/robot/mecanum_base.hpp>
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tope {
+
+struct RobotModel;  // wraps pinocchio::Model, so that no public header includes Pinocchio
+
+/// What a URDF cannot say about a robot.
+struct RobotConfig {
+  /// Joints held fixed, with their positions [rad or m]; they leave the model.
+  std::map<std::string, double> locked_joints;
+  /// Rotor inertia seen at the joint, rotor times gear ratio squared [kg m2 or kg].
+  std::map<std::string, double> rotor_inertia;
+  /// Torque or force bounds that replace the URDF's [Nm or N].
+  std::map<std::string, double> effort_limit;
+  /// Names of the base joints x, y, yaw, and the wheels under them; none for a robot without mecanum wheels.
+  struct Base {
+    std::string x;
+    std::string y;
+    std::string yaw;
+    MecanumBaseOptions wheels;
+  };
+  std::optional<Base> mecanum_base;
+
+  /// Reads a robot's YAML file. Errors: ConfigError with file, line and key.
+  static RobotConfig from_yaml(const std::filesystem::path& file);
+};
+
+/// A robot of revolute, continuous and prismatic joints: the kinematic tree, its named joints and their
+/// bounds. The model is shared between copies and never changes; the bounds belong to the copy. A continuous
+/// joint has one coordinate, its angle, counted past any full turn.
+class Robot {
+ public:
+  /// Errors: ConfigError for a missing or malformed URDF, a joint of another kind, a mimic joint, an unknown
+  /// name.
+  static Robot from_urdf(const std::filesystem::path& urdf, const RobotConfig& config = {});
+  /// The same with the robot's YAML file beside the URDF.
+  static Robot from_urdf(const std::filesystem::path& urdf, const std::filesystem::path& config);
+
+  int nq() const { return static_cast<int>(joint_names_.size()); }
+  int nv() const { return static_cast<int>(joint_names_.size()); }
+  const std::string& name() const { return name_; }
+
+  const std::vector<std::string>& joint_names() const { return joint_names_; }
+  /// "rad" or "m".
+  const std::string& joint_unit(int joint) const { return joint_units_[static_cast<std::size_t>(joint)]; }
+  /// Errors: ConfigError for an unknown name, with the nearest known one.
+  int joint_index(const std::string& name) const;
+  int frame_index(const std::string& name) const;
+
+  /// Bounds of each joint (nv). Infinite where a joint has none.
+  const Vector& position_lower() const { return position_lower_; }  ///< [rad or m]
+  const Vector& position_upper() const { return position_upper_; }  ///< [rad or m]
+  const Vector& velocity_limit() const { return velocity_limit_; }  ///< [rad/s or m/s]
+  const Vector& effort_limit() const { return effort_limit_; }      ///< [Nm or N]
+
+  /// Errors: ConfigError for a wrong size, NaN, lower >= upper, or a bound that is not positive.
+  void set_position_limits(const Vector& lower, const Vector& upper);
+  void set_velocity_limit(const Vector& limit);
+  void set_effort_limit(const Vector& limit);
+
+  const std::optional<MecanumBase>& base() const { return base_; }
+  const RobotModel& model() const { return *model_; }
+
+ private:
+  Robot() = default;
+  static Robot build(const std::filesystem::path& urdf, const RobotConfig& config, const std::string& where);
+  void apply(const RobotConfig& config, const std::string& where);
+
+  std::string name_;
+  std::shared_ptr<const RobotModel> model_;
+  std::vector<std::string> joint_names_;
+  std::vector<std::string> joint_units_;
+  std::vector<std::string> frame_names_;
+  Vector position_lower_;
+  Vector position_upper_;
+  Vector velocity_limit_;
+  Vector effort_limit_;
+  std::optional<MecanumBase> base_;
+};
+
+}  // namespace tope

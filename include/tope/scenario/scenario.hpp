@@ -1,0 +1,41 @@
+#pragma once
+
+#include <tope/controller/controller.hpp>
+#include <tope/robot/robot.hpp>
+#include <tope/task/task.hpp>
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace tope {
+
+/// A task of a scenario: what the controller adds, and what people call it.
+struct ScenarioTask {
+  std::string name;
+  int level = 1;
+  std::shared_ptr<const Task> task;
+};
+
+/// A complete experiment as a YAML file tells it.
+struct Scenario {
+  std::string name;
+  std::string description;
+  std::filesystem::path file;
+  std::shared_ptr<const Robot> robot;
+  ControllerOptions controller;
+  std::string plant;      ///< "kinematic"
+  Vector initial;         ///< q at t = 0 (nq)
+  double duration = 0.0;  ///< [s]
+  int log_every = 1;      ///< cycles between rows of the log
+  std::vector<ScenarioTask> tasks;
+
+  /// Reads a file, with "--set" overrides (dotted key -> YAML value). Errors: ConfigError naming file, line
+  /// and key.
+  static Scenario load(const std::filesystem::path& file,
+                       const std::map<std::string, std::string>& overrides = {});
+};
+
+}  // namespace tope

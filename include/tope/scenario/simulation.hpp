@@ -1,0 +1,46 @@
+#pragma once
+
+#include <tope/plant/plant.hpp>
+#include <tope/scenario/log.hpp>
+#include <tope/scenario/metrics.hpp>
+#include <tope/scenario/scenario.hpp>
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace tope {
+
+struct SimulationOptions {
+  std::filesystem::path log_file;           ///< empty: none
+  bool keep_log = false;                    ///< keep the rows in memory
+  std::function<void(double)> on_progress;  ///< called now and then with the share done, 0 to 1; may throw
+};
+
+/// The closed loop of a scenario: controller, plant, log and metrics.
+class Simulation {
+ public:
+  /// Errors: ConfigError when the controller refuses its options, Error when the log cannot be written.
+  Simulation(const Scenario& scenario, const SimulationOptions& options);
+
+  /// Runs to the end of the scenario.
+  Summary run();
+
+  const Log& log() const { return log_; }
+
+ private:
+  void write_row(double t, const Vector& u);
+  void evaluate_errors();
+
+  Scenario scenario_;
+  SimulationOptions options_;
+  Controller controller_;
+  std::vector<TaskHandle> handles_;
+  std::unique_ptr<Plant> plant_;
+  Log log_;
+  std::vector<double> row_;
+  std::vector<double> errors_;
+};
+
+}  // namespace tope

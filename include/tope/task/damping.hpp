@@ -1,0 +1,22 @@
+#pragma once
+
+#include <tope/task/task.hpp>
+
+namespace tope {
+
+/// Brings every joint to rest: asks for v = 0, one row a joint. Meant for the lowest level, where it takes
+/// what freedom is left. Its error is zero by definition.
+class Damping final : public Task {
+ public:
+  explicit Damping(const Robot& robot);
+
+  std::string_view type() const override { return "damping"; }
+  std::string_view error_unit() const override { return "mixed"; }
+  bool is_goal() const override { return false; }
+  std::unique_ptr<Task> clone() const override { return std::make_unique<Damping>(*this); }
+
+ private:
+  void evaluate(const RobotTerms& /*terms*/, double /*t*/) override {}
+};
+
+}  // namespace tope

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <tope/common/types.hpp>
+
+namespace tope {
+
+/// Rotation vector of a rotation matrix [rad], its length in [0, pi]. Accurate near zero and near pi.
+Vector3 rotation_vector(const Matrix3& rotation);
+
+/// Inverse of the right Jacobian of SO(3) at the rotation vector e: d/dt log(R) = J_r^-1(log R) w, with w the
+/// angular velocity along the axes of the rotating frame (Sola et al., "A micro Lie theory", eq. 144).
+Matrix3 inverse_right_jacobian(const Vector3& e);
+
+}  // namespace tope

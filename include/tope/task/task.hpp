@@ -1,0 +1,66 @@
+#pragma once
+
+#include <tope/common/types.hpp>
+#include <tope/reference/reference.hpp>
+#include <tope/robot/robot_terms.hpp>
+
+#include <memory>
+#include <optional>
+#include <string_view>
+
+namespace tope {
+
+/// One goal: an error e(q) of m rows, its Jacobian, and the rate the error is to have. What the goal is,
+/// apart from how a control law pursues it. A new task derives from this class and implements evaluate() and
+/// clone().
+class Task {
+ public:
+  virtual ~Task() = default;
+
+  int size() const { return static_cast<int>(error_.size()); }
+  virtual std::string_view type() const = 0;
+  /// "m", "rad", or "mixed" where rows differ.
+  virtual std::string_view error_unit() const = 0;
+  /// False for tasks that only take up freedom that is left (posture, damping).
+  virtual bool is_goal() const { return true; }
+
+  /// Evaluates the task at the robot's state and time t [s]. Never allocates or throws. The first call starts
+  /// the reference.
+  void update(const RobotTerms& terms, double t);
+  /// Lets the next update() start the reference anew.
+  void restart() { started_ = false; }
+
+  const Vector& error() const { return error_; }  ///< e (m)
+  const Matrix& jacobian() const {
+    return jacobian_;
+  }  ///< J (m x nv): de/dt = J v - (what the target's motion adds)
+  /// Right-hand side b of J v = b (m): the reference's rate of the error plus what the target's motion asks
+  /// for (5).
+  const Vector& rate() const { return rate_; }
+  /// Seconds from start to promised arrival, if the reference promises one.
+  std::optional<double> duration() const;
+  /// True when a rotation error lies within 0.05 rad of pi, where its direction is about to flip.
+  bool near_flip() const { return near_flip_; }
+
+  virtual std::unique_ptr<Task> clone() const = 0;
+
+ protected:
+  Task(int size, int nv, Reference reference);
+  Task(const Task&) = default;
+  Task& operator=(const Task&) = default;
+
+  /// Fills error_, jacobian_ and feedforward_.
+  virtual void evaluate(const RobotTerms& terms, double t) = 0;
+
+  Vector error_;
+  Matrix jacobian_;
+  Vector feedforward_;  ///< rate of the error's target, so that de/dt = J v - feedforward
+  bool near_flip_ = false;
+
+ private:
+  Vector rate_;
+  Reference reference_;
+  bool started_ = false;
+};
+
+}  // namespace tope

@@ -1,0 +1,154 @@
+#include "bindings.hpp"
+#include "task_spec.hpp"
+
+#include <tope/common/error.hpp>
+#include <tope/common/names.hpp>
+#include <tope/controller/controller.hpp>
+
+#include <algorithm>
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace tope::python {
+namespace {
+
+std::size_t choice(const std::string& what, const std::string& value, const std::vector<std::string>& names) {
+  const auto found = std::find(names.begin(), names.end(), value);
+  if (found == names.end()) {
+    throw ConfigError("unknown " + what + " '" + value + "'" + name_hint(value, names));
+  }
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+void bind_options(nb::module_& module) {
+  using UnilateralOptions = Unilateral::Options;
+  nb::class_<UnilateralOptions>(module, "UnilateralOptions", "Parameters of the method `unilateral`.")
+      .def(
+          "__init__",
+          [](UnilateralOptions* self, double damping, double lock, double headroom) {
+            new (self) UnilateralOptions{.damping = damping, .lock = lock, .headroom = headroom};
+          },
+          nb::kw_only(), "damping"_a = UnilateralOptions{}.damping, "lock"_a = UnilateralOptions{}.lock,
+          "headroom"_a = UnilateralOptions{}.headroom);
+  nb::class_<PotentialFieldOptions>(module, "PotentialFieldOptions",
+                                    "Parameters of the method `potential_field`.")
+      .def(
+          "__init__",
+          [](PotentialFieldOptions* self, const std::vector<std::string>& joints, double influence,
+             double strength) {
+            new (self) PotentialFieldOptions{.joints = joints, .influence = influence, .strength = strength};
+          },
+          nb::kw_only(), "joints"_a = std::vector<std::string>{},
+          "influence"_a = PotentialFieldOptions{}.influence, "strength"_a = PotentialFieldOptions{}.strength);
+  nb::class_<LimitOptions>(module, "LimitOptions", "How joint limits are met.")
+      .def(
+          "__init__",
+          [](LimitOptions* self, const std::string& method, double buffer, double gain, double margin,
+             const std::string& ramp, const std::map<std::string, double>& buffers,
+             const UnilateralOptions& unilateral, const PotentialFieldOptions& potential_field,
+             bool enforce_conditions) {
+            new (self) LimitOptions{
+                .method = limit_method_from(method),
+                .rows = {.buffer = buffer,
+                         .buffers = buffers,
+                         .gain = gain,
+                         .ramp = static_cast<Ramp>(choice("ramp", ramp, {"raised_cosine", "quintic"})),
+                         .margin = margin},
+                .unilateral = unilateral,
+                .potential_field = potential_field,
+                .enforce_conditions = enforce_conditions};
+          },
+          nb::kw_only(), "method"_a = to_string(LimitOptions{}.method),
+          "buffer"_a = JointLimitOptions{}.buffer, "gain"_a = JointLimitOptions{}.gain,
+          "margin"_a = JointLimitOptions{}.margin, "ramp"_a = "raised_cosine",
+          "buffers"_a = std::map<std::string, double>{}, "unilateral"_a = UnilateralOptions{},
+          "potential_field"_a = PotentialFieldOptions{}, "enforce_conditions"_a = true);
+}
+
+void bind_status(nb::module_& module) {
+  nb::class_<Status>(module, "Status", "What acted in one cycle.")
+      .def_prop_ro("ok", &Status::ok)
+      .def_prop_ro("events",
+                   [](const Status& status) {
+                     std::vector<std::string> names;
+                     for (const Event event : all_events) {
+                       if (status.has(event)) {
+                         names.emplace_back(to_string(event));
+                       }
+                     }
+                     return names;
+                   })
+      .def_ro("scale", &Status::scale)
+      .def_ro("laws", &Status::laws)
+      .def("__str__", &event_names);
+  nb::class_<TaskHandle>(module, "TaskHandle", "Names a task inside the controller that returned it.");
+}
+
+std::map<std::string, double> named_activations(const Controller& controller) {
+  std::map<std::string, double> named;
+  for (int j = 0; j < controller.robot().nv(); ++j) {
+    if (!controller.limits().limited(j)) {
+      continue;
+    }
+    const std::string& joint = controller.robot().joint_names()[static_cast<std::size_t>(j)];
+    named[joint + ".upper"] = controller.upper_activation()[j];
+    named[joint + ".lower"] = controller.lower_activation()[j];
+  }
+  return named;
+}
+
+}  // namespace
+
+void bind_controller(nb::module_& module) {
+  bind_options(module);
+  bind_status(module);
+  nb::class_<Controller>(module, "Controller",
+                         "Serves tasks in strict order of priority and keeps joint limits.")
+      .def(
+          "__init__",
+          [](Controller* self, const Robot& robot, const std::string& mode, double dt,
+             const LimitOptions& limits, const std::vector<double>& joint_weights) {
+            choice("mode", mode, {"velocity"});
+            new (self) Controller(robot, {.mode = Mode::velocity,
+                                          .dt = dt,
+                                          .limits = limits,
+                                          .singularities = {},
+                                          .joint_weights = joint_weights});
+          },
+          "robot"_a, nb::kw_only(), "mode"_a, "dt"_a, "limits"_a = LimitOptions{},
+          "joint_weights"_a = std::vector<double>{}, "Takes a copy of the robot with its bounds as they are.")
+      .def(
+          "add",
+          [](Controller& controller, const TaskSpec& spec, int level, double over) {
+            return controller.add(level, *spec.make(controller.robot()), {.over = over});
+          },
+          "task"_a, nb::kw_only(), "level"_a, "over"_a = 0.0, "Adds a task; `over` seconds let it fade in.")
+      .def(
+          "remove",
+          [](Controller& controller, TaskHandle handle, double over) {
+            controller.remove(handle, {.over = over});
+          },
+          "handle"_a, nb::kw_only(), "over"_a = 0.0, "Removes a task; `over` seconds let it fade out.")
+      .def(
+          "update",
+          [](Controller& controller, const Vector& q, const Vector& v, double t) {
+            Vector u = Vector::Zero(controller.robot().nv());
+            controller.update(q, v, t, u);
+            return u;
+          },
+          "q"_a, "v"_a, "t"_a, "One cycle: the command (nv) at state q (nq), v (nv) and time t [s].")
+      .def(
+          "error",
+          [](const Controller& controller, TaskHandle handle) -> Vector {
+            return controller.task(handle).error();
+          },
+          "handle"_a, "Error of a task as of the last update.")
+      .def_prop_ro("status", &Controller::status)
+      .def_prop_ro(
+          "status_text",
+          [](const Controller& controller) { return describe(controller.status(), controller.robot()); })
+      .def_prop_ro("activations", &named_activations, "How active each limit is, 0 to 1, by 'joint.side'.");
+}
+
+}  // namespace tope::python

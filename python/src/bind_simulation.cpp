@@ -1,0 +1,186 @@
+#include "bindings.hpp"
+
+#include <tope/law/limit_method.hpp>
+#include <tope/scenario/simulation.hpp>
+
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/function.h>
+#include <nanobind/stl/string_view.h>
+
+#include <cmath>
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace tope::python {
+namespace {
+
+nb::object finite_or_none(double value) { return std::isfinite(value) ? nb::cast(value) : nb::none(); }
+
+nb::object optional_number(const std::optional<double>& value) {
+  return value ? nb::cast(*value) : nb::none();
+}
+
+nb::dict describe_joint(const Robot& robot, const JointLimits& limits, int joint) {
+  nb::dict entry;
+  entry["name"] = robot.joint_names()[static_cast<std::size_t>(joint)];
+  entry["unit"] = robot.joint_unit(joint);
+  entry["lower"] = finite_or_none(limits.lower()[joint]);
+  entry["upper"] = finite_or_none(limits.upper()[joint]);
+  entry["buffer"] = limits.buffer(joint);
+  entry["bound"] = limits.velocity_limit()[joint];
+  return entry;
+}
+
+nb::dict describe_task(const ScenarioTask& task) {
+  nb::dict entry;
+  entry["name"] = task.name;
+  entry["type"] = std::string(task.task->type());
+  entry["level"] = task.level;
+  entry["size"] = task.task->size();
+  entry["unit"] = std::string(task.task->error_unit());
+  entry["goal_time"] = optional_number(task.task->duration());
+  return entry;
+}
+
+nb::list notices(const Scenario& scenario) {
+  nb::list list;
+  if (scenario.controller.limits.method == LimitMethod::none) {
+    list.append("Joint limits are not kept: limits.method is none.");
+  }
+  if (scenario.controller.limits.method == LimitMethod::potential_field) {
+    list.append("A potential field acts in the null space of the tasks and keeps no limit by itself.");
+  }
+  if (!scenario.controller.limits.enforce_conditions) {
+    list.append("Safety inequalities are reported, not enforced: limits.conditions is report.");
+  }
+  return list;
+}
+
+nb::dict describe_scenario(const Scenario& scenario) {
+  const JointLimits limits(*scenario.robot, scenario.controller.limits.rows);
+  nb::list joints;
+  for (int j = 0; j < scenario.robot->nv(); ++j) {
+    joints.append(describe_joint(*scenario.robot, limits, j));
+  }
+  nb::list tasks;
+  for (const ScenarioTask& task : scenario.tasks) {
+    tasks.append(describe_task(task));
+  }
+  nb::dict entry;
+  entry["name"] = scenario.name;
+  entry["description"] = scenario.description;
+  entry["file"] = scenario.file.string();
+  entry["mode"] = "velocity";
+  entry["method"] = to_string(scenario.controller.limits.method);
+  entry["dt"] = scenario.controller.dt;
+  entry["duration"] = scenario.duration;
+  entry["joints"] = joints;
+  entry["tasks"] = tasks;
+  entry["notices"] = notices(scenario);
+  return entry;
+}
+
+/// {joint: value, "overall": largest of value / scale}; joints whose value is NaN are left out.
+nb::dict by_joint(const Robot& robot, const Vector& values, const Vector& scale) {
+  nb::dict entry;
+  double overall = -std::numeric_limits<double>::infinity();
+  for (int j = 0; j < robot.nv(); ++j) {
+    if (std::isnan(values[j])) {
+      continue;
+    }
+    entry[robot.joint_names()[static_cast<std::size_t>(j)].c_str()] = values[j];
+    overall = std::max(overall, values[j] / scale[j]);
+  }
+  entry["overall"] = finite_or_none(overall);
+  return entry;
+}
+
+nb::dict describe_summary(const Scenario& scenario, const Summary& summary) {
+  const Robot& robot = *scenario.robot;
+  const Vector ones = Vector::Ones(robot.nv());
+  nb::dict errors;
+  for (const auto& [name, result] : summary.tasks) {
+    nb::dict error;
+    error["final"] = result.final_error;
+    error["at_goal_time"] = optional_number(result.at_goal_time);
+    errors[name.c_str()] = error;
+  }
+  nb::dict cycle_time;
+  const std::array<const char*, 4> names{"p50", "p99", "p999", "max"};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    cycle_time[names[i]] = summary.cycle_time_us[i];
+  }
+  nb::dict entry;
+  entry["scenario"] = describe_scenario(scenario);
+  entry["max_limit_violation"] = by_joint(robot, summary.limit_violation, ones);
+  entry["max_command_jump"] = by_joint(robot, summary.command_jump, ones);
+  entry["command_variation"] = by_joint(robot, summary.command_variation, robot.velocity_limit());
+  entry["buffer_time"] = by_joint(robot, summary.buffer_time, ones);
+  entry["task_error"] = errors;
+  entry["time_to_goal"] = optional_number(summary.time_to_goal);
+  entry["status_counts"] = nb::cast(summary.status_counts);
+  entry["cycle_time_us"] = cycle_time;
+  entry["cycles"] = summary.cycles;
+  entry["completed"] = true;
+  return entry;
+}
+
+/// Rows of the log as a numpy array that owns a copy.
+nb::object log_array(const Log& log) {
+  auto* copy = new std::vector<double>(log.values());
+  const nb::capsule owner(copy,
+                          [](void* pointer) noexcept { delete static_cast<std::vector<double>*>(pointer); });
+  const std::size_t columns = log.columns().size();
+  return nb::cast(
+      nb::ndarray<nb::numpy, double, nb::ndim<2>>(copy->data(), {copy->size() / columns, columns}, owner));
+}
+
+nb::dict simulate(const Scenario& scenario, const std::optional<std::filesystem::path>& out,
+                  const std::optional<std::function<void(double)>>& progress, bool keep_log) {
+  Simulation simulation(scenario, {.log_file = out ? *out / "log.csv" : std::filesystem::path(),
+                                   .keep_log = keep_log,
+                                   .on_progress = progress ? *progress : std::function<void(double)>()});
+  const Summary summary = simulation.run();
+  nb::dict result;
+  result["summary"] = describe_summary(scenario, summary);
+  result["columns"] = nb::cast(simulation.log().columns());
+  result["data"] = log_array(simulation.log());
+  result["status"] = nb::cast(simulation.log().status());
+  return result;
+}
+
+nb::list check(const Scenario& scenario) {
+  ControllerOptions options = scenario.controller;
+  options.limits.enforce_conditions = false;
+  nb::list list;
+  for (const Condition& condition : Controller(*scenario.robot, options).conditions()) {
+    nb::dict entry;
+    entry["name"] = condition.name;
+    entry["joint"] = condition.joint;
+    entry["expression"] = condition.expression;
+    entry["value"] = condition.value;
+    entry["bound"] = condition.bound;
+    entry["margin"] = condition.margin();
+    entry["ok"] = condition.holds();
+    entry["advice"] = condition.advice;
+    list.append(entry);
+  }
+  return list;
+}
+
+}  // namespace
+
+void bind_simulation(nb::module_& module) {
+  module.attr("LIMIT_METHODS") = nb::tuple(nb::cast(limit_method_names()));
+  nb::class_<Scenario>(module, "Scenario", "A complete experiment as a YAML file tells it.")
+      .def("describe", &describe_scenario)
+      .def_prop_ro("initial", [](const Scenario& scenario) -> Vector { return scenario.initial; });
+  module.def("load_scenario", &Scenario::load, "path"_a,
+             "overrides"_a = std::map<std::string, std::string>{});
+  module.def("simulate", &simulate, "scenario"_a, "out"_a = nb::none(), "progress"_a = nb::none(),
+             "keep_log"_a = true);
+  module.def("check", &check, "scenario"_a);
+}
+
+}  // namespace tope::python

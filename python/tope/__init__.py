@@ -1,0 +1,50 @@
+"""Strict-priority task-space control of redundant robots that meets joint limits without a jump."""
+
+from tope._core import (
+    LIMIT_METHODS,
+    ConfigError,
+    Controller,
+    Damping,
+    Error,
+    Exponential,
+    FrameOrientation,
+    FramePose,
+    FramePosition,
+    JointPosition,
+    LimitOptions,
+    Posture,
+    PotentialFieldOptions,
+    PredefinedTime,
+    Robot,
+    Status,
+    Task,
+    TaskHandle,
+    UnilateralOptions,
+)
+from tope.simulation import Run, simulate
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "LIMIT_METHODS",
+    "ConfigError",
+    "Controller",
+    "Damping",
+    "Error",
+    "Exponential",
+    "FrameOrientation",
+    "FramePose",
+    "FramePosition",
+    "JointPosition",
+    "LimitOptions",
+    "Posture",
+    "PotentialFieldOptions",
+    "PredefinedTime",
+    "Robot",
+    "Run",
+    "Status",
+    "Task",
+    "TaskHandle",
+    "UnilateralOptions",
+    "simulate",
+]

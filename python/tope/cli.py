@@ -1,0 +1,217 @@
+"""The command line: tope run, tope compare, tope check."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.progress import Progress as ProgressBar
+from rich.table import Table
+from rich.text import Text
+
+from tope import _core, words
+from tope.compare import compare as run_comparison
+from tope.compare import known_methods
+from tope.runs import finite
+from tope.simulation import Progress
+from tope.simulation import simulate as run_scenario
+
+PIPED_WIDTH = 200  # columns of a table that does not go to a terminal
+
+app = typer.Typer(
+    name="tope",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    help="Strict-priority task-space control of redundant robots that meets joint limits smoothly.",
+)
+
+Scenario = Annotated[Path, typer.Argument(metavar="SCENARIO", help="The scenario file (YAML).")]
+Set = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Replace a key of the scenario, as in limits.gain=3."),
+]
+Out = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="The folder to write to.")]
+
+
+@app.command()
+def run(
+    scenario: Scenario,
+    sets: Set = None,
+    out: Out = None,
+    no_report: Annotated[bool, typer.Option("--no-report", help="Do not write report.html.")] = False,
+) -> None:
+    """Simulate a scenario.
+
+    Writes log.csv, summary.json and report.html to runs/<scenario>, or to --out.
+    """
+    folder = out or Path("runs") / scenario.stem
+    with progress_bar(f"Simulating {scenario.stem}") as progress:
+        done = run_scenario(
+            scenario, out=folder, overrides=overrides(sets), progress=progress, report=not no_report
+        )
+    rows = [
+        *words.summary_rows(done.summary),
+        written(folder, "summary.json" if no_report else "report.html"),
+    ]
+    console = output()
+    say_notices(console, done.scenario["notices"])
+    console.print(pairs(rows))
+
+
+@app.command()
+def compare(
+    scenario: Scenario,
+    limits: Annotated[
+        str | None,
+        typer.Option("--limits", metavar="METHOD,METHOD…", help="Ways to keep joint limits; all by default."),
+    ] = None,
+    others: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--with", metavar="SCENARIO", help="Overlay the run of another scenario, under its own name."
+        ),
+    ] = None,
+    sets: Set = None,
+    out: Out = None,
+) -> None:
+    """Compare ways to keep joint limits.
+
+    Simulates the scenario once per way; writes compare.json and report.html to runs/<scenario>-compare, or to
+    --out. Every run is repeated with a cycle ten times shorter, to tell true jumps of the command from steep
+    slopes. What --set changes holds for every run.
+    """
+    folder = out or Path("runs") / f"{scenario.stem}-compare"
+    with progress_bar(f"Comparing {scenario.stem}") as progress:
+        runs = run_comparison(
+            scenario,
+            limits=methods(limits),
+            others=others or (),
+            out=folder,
+            overrides=overrides(sets),
+            progress=progress,
+        )
+    table = Table(*words.COMPARISON_HEADER)
+    for name, done in runs.items():
+        table.add_row(*map(Text, words.comparison_row(name, done.summary)))
+    console = output()
+    say_notices(
+        console, dict.fromkeys(notice for done in runs.values() for notice in done.scenario["notices"])
+    )
+    console.print(table)
+    console.print(words.COMPARISON_NOTE)
+    console.print(pairs([written(folder, "report.html")]))
+
+
+@app.command()
+def check(
+    scenario: Scenario,
+    sets: Set = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """Check a scenario without running it.
+
+    Prints each safety inequality with its margin; fails if one does not hold.
+    """
+    loaded = _core.load_scenario(str(scenario), overrides(sets))
+    inequalities = _core.check(loaded)
+    if as_json:
+        print(json.dumps(finite(inequalities), indent=2, ensure_ascii=False))
+    else:
+        console = output()
+        say_notices(console, loaded.describe()["notices"])
+        print_inequalities(console, inequalities)
+    if not all(each["ok"] for each in inequalities):
+        raise typer.Exit(1)
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the command line; an expected failure is one line on stderr."""
+    try:
+        app(arguments)
+    except _core.Error as error:
+        sys.exit(f"tope: {error}")
+    except OSError as error:
+        sys.exit(f"tope: {error.filename}: {error.strerror}")
+
+
+def overrides(sets: Sequence[str] | None) -> dict[str, str]:
+    """The scenario keys that --set replaces."""
+    pairs = [each.partition("=") for each in sets or ()]
+    for key, equals, value in pairs:
+        if not key or not equals:
+            raise typer.BadParameter(
+                f"'{key}{equals}{value}' is not of the form KEY=VALUE", param_hint="--set"
+            )
+    return {key.strip(): value.strip() for key, _, value in pairs}
+
+
+def methods(limits: str | None) -> Sequence[str] | None:
+    """The methods that --limits names."""
+    if limits is None:
+        return None
+    try:
+        return known_methods([name.strip() for name in limits.split(",")])
+    except _core.ConfigError as error:
+        raise typer.BadParameter(str(error), param_hint="--limits") from error
+
+
+@contextmanager
+def progress_bar(title: str) -> Iterator[Progress | None]:
+    """A progress bar on stderr, if that is a terminal."""
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        yield None
+        return
+    with ProgressBar(console=console, transient=True) as bar:
+        task = bar.add_task(title, total=1.0)
+        yield lambda done: bar.update(task, completed=done)
+
+
+def output() -> Console:
+    """Standard output; wide enough for a table if it is not a terminal."""
+    console = Console(highlight=False)
+    return console if console.is_terminal else Console(highlight=False, width=PIPED_WIDTH)
+
+
+def say_notices(console: Console, notices: Sequence[str] | dict[str, None]) -> None:
+    """What the reader should know about the scenario."""
+    for notice in notices:
+        console.print(Text(f"Note: {notice}"))
+
+
+def pairs(rows: Sequence[tuple[str, str]]) -> Table:
+    """(What, sentence) rows as a table without frame."""
+    table = Table.grid(padding=(0, 2))
+    for what, sentence in rows:
+        table.add_row(Text(what, style="bold"), Text(sentence))
+    return table
+
+
+def written(folder: Path, name: str) -> tuple[str, str]:
+    """Where the result is."""
+    return ("Report" if name == "report.html" else "Written to", str(folder / name))
+
+
+def print_inequalities(console: Console, inequalities: Sequence[dict[str, Any]]) -> None:
+    """Each inequality as a row, and what to do about those that fail."""
+    table = Table("condition", "joint", "inequality", "value", "bound", "margin", "")
+    for each in inequalities:
+        verdict = Text("ok", style="green") if each["ok"] else Text("FAIL", style="bold red")
+        numbers = (words.number(each[key]) for key in ("value", "bound", "margin"))
+        table.add_row(*map(Text, (each["name"], each["joint"], each["expression"], *numbers)), verdict)
+    console.print(table)
+    for advice in dict.fromkeys(each["advice"] for each in inequalities if each["advice"]):
+        joints = [each["joint"] for each in inequalities if each["advice"] == advice]
+        console.print(Text(f"{', '.join(joints)}: {advice}"))
+
+
+if __name__ == "__main__":
+    main()

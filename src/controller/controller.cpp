@@ -1,0 +1,283 @@
+#include <tope/common/error.hpp>
+#include <tope/controller/controller.hpp>
+#include <tope/law/command_bounds.hpp>
+#include <tope/law/smooth_step.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tope {
+namespace {
+
+Matrix command_weight(const Robot& robot, const std::vector<double>& joint_weights) {
+  if (joint_weights.empty()) {
+    return Matrix::Identity(robot.nv(), robot.nv());
+  }
+  if (static_cast<int>(joint_weights.size()) != robot.nv()) {
+    throw ConfigError("joint_weights: expected " + std::to_string(robot.nv()) + " values, got " +
+                      std::to_string(joint_weights.size()));
+  }
+  Vector inverse(robot.nv());
+  for (int j = 0; j < robot.nv(); ++j) {
+    const double weight = joint_weights[static_cast<std::size_t>(j)];
+    if (!std::isfinite(weight) || weight <= 0.0) {
+      throw ConfigError("joint_weights: " + robot.joint_names()[static_cast<std::size_t>(j)] +
+                        ": must be positive, got " + std::to_string(weight));
+    }
+    inverse[j] = 1.0 / weight;
+  }
+  return inverse.asDiagonal();
+}
+
+void require_conditions(const std::vector<Condition>& conditions) {
+  for (const Condition& condition : conditions) {
+    if (!condition.holds()) {
+      throw ConfigError("limits are not safe: " + condition.name +
+                        (condition.joint.empty() ? "" : " (" + condition.joint + ")") + ": " +
+                        condition.expression + " fails with " + std::to_string(condition.value) + " > " +
+                        std::to_string(condition.bound) + "; " + condition.advice);
+    }
+  }
+}
+
+double require_period(double dt) {
+  if (!std::isfinite(dt) || dt <= 0.0) {
+    throw ConfigError("dt: must be positive and finite [s], got " + std::to_string(dt));
+  }
+  return dt;
+}
+
+}  // namespace
+
+Controller::Controller(const Robot& robot, const ControllerOptions& options)
+    : robot_(robot),
+      options_(options),
+      terms_(robot_),
+      limits_(robot_, options_.limits.rows),
+      whitening_(Whitening::velocity(command_weight(robot_, options_.joint_weights))),
+      stack_(robot_.nv()),
+      solution_(robot_.nv()),
+      command_(Vector::Zero(robot_.nv())),
+      limit_command_(Vector::Zero(robot_.nv())),
+      upper_activation_(Vector::Zero(robot_.nv())),
+      lower_activation_(Vector::Zero(robot_.nv())) {
+  require_period(options_.dt);
+  if (options_.limits.method == LimitMethod::potential_field) {
+    field_.emplace(robot_, options_.limits.potential_field);
+  }
+  if (options_.limits.enforce_conditions) {
+    require_conditions(conditions());
+  }
+  rebuild();
+}
+
+std::vector<Condition> Controller::conditions() const {
+  return velocity_conditions(robot_, limits_, options_.limits.method, options_.limits.unilateral.headroom,
+                             options_.dt);
+}
+
+TaskHandle Controller::add(int level, const Task& task, const TransitionOptions& options) {
+  if (level < 1) {
+    throw ConfigError("level: must be at least 1 (limits are above all levels), got " +
+                      std::to_string(level));
+  }
+  if (!std::isfinite(options.over) || options.over < 0.0) {
+    throw ConfigError("over: must be zero or positive [s], got " + std::to_string(options.over));
+  }
+  if (task.jacobian().cols() != robot_.nv()) {
+    throw ConfigError("task " + std::string(task.type()) + " was made for a robot with " +
+                      std::to_string(task.jacobian().cols()) + " degrees of freedom, this one has " +
+                      std::to_string(robot_.nv()));
+  }
+  std::erase_if(entries_, [](const Entry& e) { return e.gone(); });
+  std::unique_ptr<Task> copy = task.clone();
+  copy->restart();
+  const double activation = options.over > 0.0 ? 0.0 : 1.0;
+  const auto after = std::upper_bound(entries_.begin(), entries_.end(), level,
+                                      [](int value, const Entry& e) { return value < e.level; });
+  const TaskHandle handle{next_id_++};
+  entries_.insert(after, Entry{.id = handle.id,
+                               .level = level,
+                               .task = std::move(copy),
+                               .activation = activation,
+                               .from = activation,
+                               .to = 1.0,
+                               .over = options.over,
+                               .start_time = std::numeric_limits<double>::quiet_NaN()});
+  rebuild();
+  return handle;
+}
+
+void Controller::remove(TaskHandle handle, const TransitionOptions& options) {
+  if (!std::isfinite(options.over) || options.over < 0.0) {
+    throw ConfigError("over: must be zero or positive [s], got " + std::to_string(options.over));
+  }
+  auto& leaving =
+      const_cast<Entry&>(entry(handle));  // NOLINT(cppcoreguidelines-pro-type-const-cast): our own
+  leaving.from = leaving.activation;
+  leaving.to = 0.0;
+  leaving.over = options.over;
+  leaving.start_time = std::numeric_limits<double>::quiet_NaN();
+}
+
+const Controller::Entry& Controller::entry(TaskHandle handle) const {
+  const auto found =
+      std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.id == handle.id; });
+  if (found == entries_.end()) {
+    throw Error("no task with handle " + std::to_string(handle.id) +
+                ": it was never added, or is removed already");
+  }
+  return *found;
+}
+
+const Task& Controller::task(TaskHandle handle) const { return *entry(handle).task; }
+
+double Controller::activation(TaskHandle handle) const { return entry(handle).activation; }
+
+/// Lays out the stack for the present entries and reserves the law's memory.
+void Controller::rebuild() {
+  const int n = robot_.nv();
+  stack_.motion = whitening_.motion();
+  stack_.tasks.clear();
+  entry_row_.clear();
+  // the field goes to the lowest level that leaves it some freedom: above a task that takes all of it
+  bool field_pending = field_.has_value();
+  const auto add_field = [&](int level) {
+    field_row_ = stack_.tasks.size();
+    stack_.tasks.push_back(
+        {.level = level, .activation = 0.0, .a = whitening_.motion(), .b = Vector::Zero(n)});
+    field_pending = false;
+  };
+  int offset = 0;  // makes room for the field's level
+  for (const Entry& e : entries_) {
+    if (field_pending && e.task->size() >= n) {
+      add_field(e.level);
+      offset = 1;
+    }
+    entry_row_.push_back(stack_.tasks.size());
+    stack_.tasks.push_back({.level = e.level + offset,
+                            .activation = e.activation,
+                            .a = Matrix::Zero(e.task->size(), n),
+                            .b = Vector::Zero(e.task->size())});
+  }
+  if (field_pending) {
+    add_field(entries_.empty() ? 1 : entries_.back().level + 1);
+  }
+  law_.emplace(stack_, LawOptions{.method = options_.limits.method,
+                                  .hierarchy = options_.singularities,
+                                  .unilateral = options_.limits.unilateral});
+}
+
+bool Controller::valid(const VectorArg& q, const VectorArg& v, double t, const Eigen::Ref<Vector>& u) const {
+  return q.size() == robot_.nq() && v.size() == robot_.nv() && u.size() == robot_.nv() && std::isfinite(t) &&
+         q.allFinite() && v.allFinite();
+}
+
+const Status& Controller::update(const VectorArg& q, const VectorArg& v, double t,
+                                 Eigen::Ref<Vector> u) noexcept {
+  status_ = Status{};
+  if (!valid(q, v, t, u)) {
+    status_.add(Event::bad_input);
+    u.setZero();
+    return status_;
+  }
+  terms_.update(q, v);
+  limits_.update(q);
+  stack_.limit_activation = limits_.activation();
+  stack_.limit_target = limits_.target();
+  stack_.motion_lower = limits_.motion_lower();
+  stack_.motion_upper = limits_.motion_upper();
+  fill_tasks(t);
+  fill_field();
+  law_->solve(stack_, solution_);
+  bound(u);
+  report(u);
+  return status_;
+}
+
+void Controller::Entry::advance(double t) {
+  if (std::isnan(start_time)) {
+    start_time = t;
+  }
+  const double progress = over > 0.0 ? (t - start_time) / over : 1.0;
+  activation = from + (to - from) * smooth_step(progress);
+}
+
+void Controller::fill_tasks(double t) {
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    Entry& e = entries_[i];
+    e.advance(t);
+    TaskRows& rows = stack_.tasks[entry_row_[i]];
+    rows.activation = e.activation;
+    if (e.gone()) {
+      continue;
+    }
+    e.task->update(terms_, t);
+    whitening_.rows(e.task->jacobian(), rows.a);
+    rows.b = e.task->rate();
+    if (e.task->near_flip()) {
+      status_.add(Event::near_flip);
+    }
+  }
+}
+
+void Controller::fill_field() {
+  if (!field_) {
+    return;
+  }
+  field_->update(terms_.position());
+  TaskRows& rows = stack_.tasks[field_row_];
+  rows.activation = field_->in_range() ? 1.0 : 0.0;
+  rows.b = field_->motion();
+  for (int joint = 0; joint < robot_.nv(); ++joint) {
+    if (field_->repels(joint)) {
+      stack_.limit_activation[joint] = 0.0;
+    }
+  }
+}
+
+void Controller::bound(Eigen::Ref<Vector> u) {
+  whitening_.command(solution_.y_limits, limit_command_);
+  whitening_.command(solution_.y, command_);
+  const CommandBounds bounds = CommandBounds::apply(limits_.velocity_limit(), limit_command_, command_);
+  u = command_;
+  status_.scale = bounds.scale;
+  status_.bound_joint = bounds.clipped >= 0 ? bounds.clipped : bounds.most_binding;
+  if (bounds.scale < 1.0) {
+    status_.add(Event::scaled);
+  }
+  if (bounds.clipped >= 0) {
+    status_.add(Event::clipped);
+  }
+}
+
+void Controller::report(const Eigen::Ref<Vector>& u) {
+  switch (options_.limits.method) {
+    case LimitMethod::unilateral:
+      limits_.engagement(u, upper_activation_, lower_activation_);
+      break;
+    case LimitMethod::none:
+      break;
+    default:
+      limits_.activation_by_side(upper_activation_, lower_activation_);
+  }
+  status_.laws = solution_.laws;
+  Eigen::Index joint = 0;
+  if (upper_activation_.cwiseMax(lower_activation_).maxCoeff(&joint) > 0.0) {
+    status_.add(Event::limit);
+    status_.limit_joint = static_cast<int>(joint);
+  }
+  status_.beyond_joint = limits_.beyond();
+  if (status_.beyond_joint >= 0) {
+    status_.add(Event::beyond);
+  }
+  if (solution_.singular) {
+    status_.add(Event::singular);
+  }
+  if (solution_.cut_off) {
+    status_.add(Event::cut_off);
+  }
+}
+
+}  // namespace tope

@@ -1,0 +1,43 @@
+#include <tope/law/stack.hpp>
+
+#include <algorithm>
+
+namespace tope {
+
+Stack::Stack(int n)
+    : motion(Matrix::Identity(n, n)),
+      limit_activation(Vector::Zero(n)),
+      limit_target(Vector::Zero(n)),
+      motion_lower(Vector::Zero(n)),
+      motion_upper(Vector::Zero(n)) {}
+
+int Stack::max_level_rows() const {
+  int largest = 0;
+  int rows = 0;
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    rows = (i > 0 && tasks[i].level == tasks[i - 1].level ? rows : 0) + static_cast<int>(tasks[i].a.rows());
+    largest = std::max(largest, rows);
+  }
+  return largest;
+}
+
+Selection::Selection(const Stack& stack)
+    : limits(static_cast<std::size_t>(stack.size()), 0), tasks(stack.tasks.size(), 0) {}
+
+void Solution::set_zero() {
+  y.setZero();
+  y_limits.setZero();
+  singular = false;
+  cut_off = false;
+  laws = 0;
+}
+
+void Solution::add(double weight, const Solution& other) {
+  y += weight * other.y;
+  y_limits += weight * other.y_limits;
+  singular = singular || other.singular;
+  cut_off = cut_off || other.cut_off;
+  laws += other.laws;
+}
+
+}  // namespace tope

@@ -1,0 +1,113 @@
+#include <tope/common/error.hpp>
+#include <tope/law/smooth_step.hpp>
+#include <tope/law/unilateral.hpp>
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tope {
+namespace {
+
+int workspace_rows(const Stack& stack) { return std::max(1, stack.max_level_rows()); }
+
+}  // namespace
+
+Unilateral::Unilateral(const Stack& stack, const Options& options)
+    : options_(options),
+      rows_(stack.size(), workspace_rows(stack)),
+      solver_(stack.size(), stack.size()),
+      eigen_(workspace_rows(stack)),
+      open_(stack.size(), stack.size()),
+      task_(workspace_rows(stack), stack.size()),
+      task_gram_(workspace_rows(stack), workspace_rows(stack)),
+      factor_(workspace_rows(stack), workspace_rows(stack)),
+      open_task_(stack.size(), workspace_rows(stack)),
+      motion_(stack.size(), stack.size()),
+      residual_(workspace_rows(stack)),
+      motion_at_y_(stack.size()),
+      lower_(stack.size()),
+      upper_(stack.size()),
+      no_rows_(0, stack.size()),
+      no_residual_(0) {
+  if (!(options.damping > 0.0 && options.lock > 0.0 && options.headroom > 0.0)) {
+    throw ConfigError("unilateral: damping, lock and headroom must be positive, got " +
+                      std::to_string(options.damping) + ", " + std::to_string(options.lock) + ", " +
+                      std::to_string(options.headroom));
+  }
+}
+
+void Unilateral::solve(const Stack& stack, const Selection& selection, Solution& solution) {
+  solution.set_zero();
+  solution.laws = 1;
+  open_.setIdentity();
+  set_bounds(stack, 0, solution.y);
+  solution.cut_off = !solver_.solve(no_rows_, no_residual_, 1.0, stack.motion, lower_, upper_);
+  solution.y = solver_.z();
+  solution.y_limits = solution.y;
+
+  for (std::size_t i = 0; i < stack.tasks.size();) {
+    const int level = stack.tasks[i].level;
+    i = rows_.gather(stack, selection, i);
+    const int m = rows_.rows();
+    if (m == 0) {
+      continue;
+    }
+    task_.topRows(m).noalias() = rows_.a() * open_;
+    residual_.head(m) = rows_.b();
+    residual_.head(m).noalias() -= rows_.a() * solution.y;
+    motion_.noalias() = stack.motion * open_;
+    set_bounds(stack, level, solution.y);
+    const bool solved = solver_.solve(task_.topRows(m), residual_.head(m),
+                                      options_.damping * options_.damping, motion_, lower_, upper_);
+    solution.cut_off = solution.cut_off || !solved;
+    solution.y.noalias() += open_ * solver_.z();
+    if (i < stack.tasks.size()) {
+      lock_level();
+    }
+  }
+}
+
+/// Bounds on T M z: the stack's, tightened by the level's headroom, less what y already uses.
+void Unilateral::set_bounds(const Stack& stack, int level, const Vector& y) {
+  const double headroom = options_.headroom / (1.0 + level);
+  motion_at_y_.noalias() = stack.motion * y;
+  lower_ = (stack.motion_lower - motion_at_y_).array() + headroom;
+  upper_ = (stack.motion_upper - motion_at_y_).array() - headroom;
+}
+
+/// Closes the directions that the level holds: fully where sigma >= lock, gradually below.
+void Unilateral::lock_level() {
+  const int m = rows_.rows();
+  auto task = task_.topRows(m);
+  auto gram = task_gram_.topLeftCorner(m, m);
+  auto factor = factor_.topLeftCorner(m, m);
+  auto open_task = open_task_.leftCols(m);
+  gram.noalias() = task * task.transpose();
+  factor = gram;
+  factor.diagonal().array() -= options_.lock * options_.lock;
+  using InPlaceCholesky = Eigen::LLT<Eigen::Ref<Matrix>>;
+  if (InPlaceCholesky(factor).info() == Eigen::Success) {  // every sigma > lock: an exact projector
+    factor = gram;
+    const InPlaceCholesky cholesky(factor);
+    cholesky.matrixL().solveInPlace(task);
+    open_task.noalias() = open_ * task.transpose();
+    open_.noalias() -= open_task * task;
+    return;
+  }
+  const SymmetricEigen::Solver& eigen = eigen_.compute(gram);
+  motion_.topRows(m).noalias() = eigen.eigenvectors().transpose() * task;
+  task = motion_.topRows(m);  // rows sigma v^T
+  open_task.noalias() = open_ * task.transpose();
+  for (Eigen::Index i = 0; i < m; ++i) {
+    // (1 - sqrt(1 - s(x))) / sigma^2 with x = sigma / lock, written so that it stays finite at sigma = 0
+    const double x = std::sqrt(std::max(0.0, eigen.eigenvalues()[i])) / options_.lock;
+    const double locked = smooth_step(x);
+    const double quotient = x < 1.0 ? 3.0 - 2.0 * x : 1.0 / (x * x);
+    open_task.col(i) *= quotient / (options_.lock * options_.lock * (1.0 + std::sqrt(1.0 - locked)));
+  }
+  open_.noalias() -= open_task * task;
+}
+
+}  // namespace tope

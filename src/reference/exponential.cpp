@@ -1,0 +1,15 @@
+#include "gain.hpp"
+
+#include <tope/reference/exponential.hpp>
+
+namespace tope {
+
+Exponential::Exponential(const Options& options) : options_(options) {
+  require_positive("Exponential: gain [1/s]", options.gain);
+}
+
+void Exponential::rate(double /*t*/, const VectorArg& error, Eigen::Ref<Vector> rate) const {
+  rate.noalias() = -options_.gain * error;
+}
+
+}  // namespace tope

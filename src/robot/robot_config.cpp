@@ -1,0 +1,56 @@
+#include "../common/yaml_reader.hpp"
+
+#include <tope/robot/robot.hpp>
+
+namespace tope {
+namespace {
+
+std::map<std::string, double> positive_numbers(const YamlReader& yaml, const std::string& key) {
+  std::map<std::string, double> values;
+  if (!yaml.has(key)) {
+    return values;
+  }
+  const YamlReader entries = yaml.map(key);
+  for (const std::string& name : entries.keys()) {
+    values[name] = entries.positive(name);
+  }
+  return values;
+}
+
+RobotConfig::Base read_base(const YamlReader& yaml) {
+  RobotConfig::Base base;
+  const YamlReader joints = yaml.map("joints");
+  base.x = joints.text("x");
+  base.y = joints.text("y");
+  base.yaw = joints.text("yaw");
+  joints.finish();
+  base.wheels.wheel_radius = yaml.positive("wheel_radius");
+  base.wheels.half_wheelbase = yaml.positive("half_wheelbase");
+  base.wheels.half_track = yaml.positive("half_track");
+  base.wheels.wheel_effort_limit = yaml.positive("wheel_effort_limit");
+  base.wheels.wheel_rotor_inertia = yaml.positive("wheel_rotor_inertia");
+  yaml.finish();
+  return base;
+}
+
+}  // namespace
+
+RobotConfig RobotConfig::from_yaml(const std::filesystem::path& file) {
+  const YamlReader yaml = YamlReader::load(file);
+  RobotConfig config;
+  yaml.text("name", "");  // for the reader of the file; the URDF names the robot
+  if (yaml.has("locked_joints")) {
+    for (const auto& [joint, position] : yaml.numbers("locked_joints")) {
+      config.locked_joints[joint] = position;
+    }
+  }
+  config.rotor_inertia = positive_numbers(yaml, "rotor_inertia");
+  config.effort_limit = positive_numbers(yaml, "effort_limit");
+  if (const auto base = yaml.optional_map("mecanum_base")) {
+    config.mecanum_base = read_base(*base);
+  }
+  yaml.finish();
+  return config;
+}
+
+}  // namespace tope

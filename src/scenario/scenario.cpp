@@ -1,0 +1,168 @@
+#include "../common/yaml_reader.hpp"
+#include "task_reader.hpp"
+
+#include <tope/common/names.hpp>
+#include <tope/scenario/scenario.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tope {
+namespace {
+
+/// Runs `build` and gives an error that names no file the place of `key`.
+template <typename Build>
+auto located(const YamlReader& yaml, const std::string& key, Build build) {
+  try {
+    return build();
+  } catch (const ConfigError& error) {
+    yaml.fail(key, error.what());
+  }
+}
+
+std::size_t choice(const YamlReader& yaml, const std::string& key, const std::string& value,
+                   const std::vector<std::string>& names) {
+  const auto found = std::find(names.begin(), names.end(), value);
+  if (found == names.end()) {
+    yaml.fail(key, "unknown value '" + value + "'" + name_hint(value, names));
+  }
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+Robot read_robot(const YamlReader& yaml) {
+  const std::filesystem::path urdf = yaml.path("urdf");
+  const bool has_config = yaml.has("config");
+  const std::filesystem::path config = has_config ? yaml.path("config") : "";
+  yaml.finish();
+  return has_config ? Robot::from_urdf(urdf, config) : Robot::from_urdf(urdf);
+}
+
+/// `limits.joints`: limits and buffers that this scenario sets, an obstacle for example.
+void read_joint_limits(const YamlReader& joints, Robot& robot, JointLimitOptions& options) {
+  Vector lower = robot.position_lower();
+  Vector upper = robot.position_upper();
+  Vector velocity = robot.velocity_limit();
+  for (const std::string& name : joints.keys()) {
+    const int joint = located(joints, name, [&] { return robot.joint_index(name); });
+    const YamlReader yaml = joints.map(name);
+    lower[joint] = yaml.number("lower", lower[joint]);
+    upper[joint] = yaml.number("upper", upper[joint]);
+    velocity[joint] = yaml.positive("velocity", velocity[joint]);
+    if (yaml.has("buffer")) {
+      options.buffers[name] = yaml.positive("buffer");
+    }
+    yaml.finish();
+    located(joints, name, [&] { robot.set_position_limits(lower, upper); });
+  }
+  robot.set_velocity_limit(velocity);
+}
+
+LimitOptions read_limits(const YamlReader& yaml, Robot& robot) {
+  LimitOptions limits;
+  const std::string method = yaml.text("method", to_string(limits.method));
+  limits.method = located(yaml, "method", [&] { return limit_method_from(method); });
+  limits.rows.buffer = yaml.positive("buffer", limits.rows.buffer);
+  limits.rows.gain = yaml.positive("gain", limits.rows.gain);
+  limits.rows.margin = yaml.positive("margin", limits.rows.margin);
+  static const std::vector<std::string> ramps{"raised_cosine", "quintic"};
+  limits.rows.ramp = static_cast<Ramp>(choice(yaml, "ramp", yaml.text("ramp", ramps[0]), ramps));
+  static const std::vector<std::string> handling{"enforce", "report"};
+  limits.enforce_conditions = choice(yaml, "conditions", yaml.text("conditions", handling[0]), handling) == 0;
+  if (const auto joints = yaml.optional_map("joints")) {
+    read_joint_limits(*joints, robot, limits.rows);
+  }
+  if (const auto law = yaml.optional_map("unilateral")) {
+    limits.unilateral.damping = law->positive("damping", limits.unilateral.damping);
+    limits.unilateral.lock = law->positive("lock", limits.unilateral.lock);
+    limits.unilateral.headroom = law->positive("headroom", limits.unilateral.headroom);
+    law->finish();
+  }
+  if (const auto field = yaml.optional_map("potential_field")) {
+    if (field->has("joints")) {
+      limits.potential_field.joints = field->texts("joints");
+    }
+    limits.potential_field.influence = field->positive("influence", limits.potential_field.influence);
+    limits.potential_field.strength = field->positive("strength", limits.potential_field.strength);
+    field->finish();
+  }
+  yaml.finish();
+  return limits;
+}
+
+Hierarchy::Options read_singularities(const YamlReader& yaml) {
+  Hierarchy::Options options;
+  options.damped_below = yaml.positive("damped_below", options.damped_below);
+  options.locked_above = yaml.positive("locked_above", options.locked_above);
+  options.epsilon = yaml.positive("epsilon", options.epsilon);
+  yaml.finish();
+  return options;
+}
+
+Vector read_initial(const YamlReader& yaml, const Robot& robot) {
+  const YamlReader joints = yaml.map("initial");
+  Vector q(robot.nq());
+  for (const std::string& name : robot.joint_names()) {
+    q[robot.joint_index(name)] = joints.number(name, 0.0);
+  }
+  joints.finish();
+  return q;
+}
+
+std::vector<ScenarioTask> read_tasks(const YamlReader& yaml, const Robot& robot) {
+  std::vector<ScenarioTask> tasks;
+  for (const YamlReader& item : yaml.list_of_maps("tasks")) {
+    tasks.push_back(read_task(item, robot));
+    const auto same_name = [&](const ScenarioTask& task) { return task.name == tasks.back().name; };
+    if (std::count_if(tasks.begin(), tasks.end(), same_name) > 1) {
+      item.fail("name", "a second task is named '" + tasks.back().name + "'");
+    }
+  }
+  if (tasks.empty()) {
+    yaml.fail("tasks", "names no task");
+  }
+  return tasks;
+}
+
+}  // namespace
+
+Scenario Scenario::load(const std::filesystem::path& file,
+                        const std::map<std::string, std::string>& overrides) {
+  const YamlReader yaml = YamlReader::load(file, overrides);
+  Scenario scenario;
+  scenario.file = file;
+  scenario.name = yaml.text("name", file.stem().string());
+  scenario.description = yaml.text("description", "");
+  choice(yaml, "mode", yaml.text("mode"), {"velocity"});
+  scenario.controller.dt = yaml.positive("dt");
+  scenario.duration = yaml.positive("duration");
+  if (scenario.duration < scenario.controller.dt) {
+    yaml.fail("duration", "must be at least dt");
+  }
+  Robot robot = read_robot(yaml.map("robot"));
+  if (const auto limits = yaml.optional_map("limits")) {
+    scenario.controller.limits = read_limits(*limits, robot);
+  }
+  if (const auto singularities = yaml.optional_map("singularities")) {
+    scenario.controller.singularities = read_singularities(*singularities);
+  }
+  if (yaml.has("joint_weights")) {
+    const Vector weights = yaml.vector("joint_weights", robot.nv());
+    scenario.controller.joint_weights.assign(weights.begin(), weights.end());
+  }
+  static const std::vector<std::string> plants{"kinematic"};
+  scenario.plant = plants[choice(yaml, "plant", yaml.text("plant", plants[0]), plants)];
+  if (const auto log = yaml.optional_map("log")) {
+    scenario.log_every = log->integer("every", 1);
+    if (scenario.log_every < 1) {
+      log->fail("every", "must be at least 1 cycle");
+    }
+    log->finish();
+  }
+  scenario.initial = read_initial(yaml, robot);
+  scenario.tasks = read_tasks(yaml, robot);
+  yaml.finish();
+  scenario.robot = std::make_shared<const Robot>(std::move(robot));
+  return scenario;
+}
+
+}  // namespace tope

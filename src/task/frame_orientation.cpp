@@ -1,0 +1,30 @@
+#include "orientation_rows.hpp"
+#include "target_checks.hpp"
+
+#include <tope/task/frame_orientation.hpp>
+
+#include <utility>
+
+namespace tope {
+
+FrameOrientation::FrameOrientation(const Robot& robot, const std::string& frame, const Matrix3& target,
+                                   Reference reference)
+    : FrameOrientation(robot, frame, Target<RotationTarget>(RotationTarget{.rotation = target}),
+                       std::move(reference)) {}
+
+FrameOrientation::FrameOrientation(const Robot& robot, const std::string& frame,
+                                   Target<RotationTarget> target, Reference reference)
+    : Task(3, robot.nv(), std::move(reference)),
+      frame_(robot.frame_index(frame)),
+      target_(std::move(target)),
+      frame_jacobian_(6, robot.nv()) {
+  require_rotation("FrameOrientation: target", target_.at(0.0).rotation);
+}
+
+void FrameOrientation::evaluate(const RobotTerms& terms, double t) {
+  terms.frame_jacobian(frame_, frame_jacobian_);
+  near_flip_ = fill_orientation_rows(terms.frame_rotation(frame_), frame_jacobian_.bottomRows<3>(),
+                                     target_.at(t), error_, jacobian_, feedforward_);
+}
+
+}  // namespace tope

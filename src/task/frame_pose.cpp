@@ -1,0 +1,37 @@
+#include "orientation_rows.hpp"
+#include "target_checks.hpp"
+
+#include <tope/task/frame_pose.hpp>
+
+#include <utility>
+
+namespace tope {
+
+FramePose::FramePose(const Robot& robot, const std::string& frame, const Vector3& position,
+                     const Matrix3& rotation, Reference reference)
+    : FramePose(robot, frame, Target<PointTarget>(PointTarget{.position = position}),
+                Target<RotationTarget>(RotationTarget{.rotation = rotation}), std::move(reference)) {}
+
+FramePose::FramePose(const Robot& robot, const std::string& frame, Target<PointTarget> position,
+                     Target<RotationTarget> rotation, Reference reference)
+    : Task(6, robot.nv(), std::move(reference)),
+      frame_(robot.frame_index(frame)),
+      position_(std::move(position)),
+      rotation_(std::move(rotation)),
+      frame_jacobian_(6, robot.nv()) {
+  require_finite("FramePose: position", position_.at(0.0).position);
+  require_rotation("FramePose: rotation", rotation_.at(0.0).rotation);
+}
+
+void FramePose::evaluate(const RobotTerms& terms, double t) {
+  const PointTarget point = position_.at(t);
+  terms.frame_jacobian(frame_, frame_jacobian_);
+  error_.head<3>() = terms.frame_position(frame_) - point.position;
+  jacobian_.topRows<3>() = frame_jacobian_.topRows<3>();
+  feedforward_.head<3>() = point.velocity;
+  near_flip_ =
+      fill_orientation_rows(terms.frame_rotation(frame_), frame_jacobian_.bottomRows<3>(), rotation_.at(t),
+                            error_.tail<3>(), jacobian_.bottomRows<3>(), feedforward_.tail<3>());
+}
+
+}  // namespace tope

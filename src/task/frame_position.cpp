@@ -1,0 +1,31 @@
+#include "target_checks.hpp"
+
+#include <tope/task/frame_position.hpp>
+
+#include <utility>
+
+namespace tope {
+
+FramePosition::FramePosition(const Robot& robot, const std::string& frame, const Vector3& target,
+                             Reference reference)
+    : FramePosition(robot, frame, Target<PointTarget>(PointTarget{.position = target}),
+                    std::move(reference)) {}
+
+FramePosition::FramePosition(const Robot& robot, const std::string& frame, Target<PointTarget> target,
+                             Reference reference)
+    : Task(3, robot.nv(), std::move(reference)),
+      frame_(robot.frame_index(frame)),
+      target_(std::move(target)),
+      frame_jacobian_(6, robot.nv()) {
+  require_finite("FramePosition: target", target_.at(0.0).position);
+}
+
+void FramePosition::evaluate(const RobotTerms& terms, double t) {
+  const PointTarget target = target_.at(t);
+  terms.frame_jacobian(frame_, frame_jacobian_);
+  error_ = terms.frame_position(frame_) - target.position;
+  jacobian_ = frame_jacobian_.topRows<3>();
+  feedforward_ = target.velocity;
+}
+
+}  // namespace tope

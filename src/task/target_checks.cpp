@@ -1,0 +1,30 @@
+#include "target_checks.hpp"
+
+#include <tope/common/error.hpp>
+
+#include <Eigen/Dense>
+
+#include <sstream>
+
+namespace tope {
+
+void require_finite(const std::string& what, const VectorArg& values) {
+  if (!values.allFinite()) {
+    std::ostringstream message;
+    message << what << ": must be finite, got (" << values.transpose() << ")";
+    throw ConfigError(message.str());
+  }
+}
+
+void require_rotation(const std::string& what, const Matrix3& rotation) {
+  const double deviation = (rotation.transpose() * rotation - Matrix3::Identity()).cwiseAbs().maxCoeff();
+  if (!(deviation < 1e-6) || !(rotation.determinant() > 0.0)) {
+    std::ostringstream message;
+    message << what << ": not a rotation: |R^T R - I| = " << deviation
+            << ", det R = " << rotation.determinant()
+            << "; it must be orthonormal to 1e-6 with determinant 1";
+    throw ConfigError(message.str());
+  }
+}
+
+}  // namespace tope

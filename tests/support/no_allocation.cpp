@@ -1,0 +1,69 @@
+#include "support/no_allocation.hpp"
+
+#include <boost/test/unit_test.hpp>
+
+#include <cerrno>
+#include <cstddef>
+
+namespace {
+
+thread_local long calls = 0;
+
+}  // namespace
+
+// glibc's own functions under the names it keeps for replacements
+extern "C" {
+void* __libc_malloc(std::size_t size);                          // NOLINT(bugprone-reserved-identifier)
+void* __libc_calloc(std::size_t count, std::size_t size);       // NOLINT(bugprone-reserved-identifier)
+void* __libc_realloc(void* memory, std::size_t size);           // NOLINT(bugprone-reserved-identifier)
+void* __libc_memalign(std::size_t alignment, std::size_t size);  // NOLINT(bugprone-reserved-identifier)
+void __libc_free(void* memory);                                 // NOLINT(bugprone-reserved-identifier)
+
+void* malloc(std::size_t size) noexcept {
+  ++calls;
+  return __libc_malloc(size);
+}
+
+void* calloc(std::size_t count, std::size_t size) noexcept {
+  ++calls;
+  return __libc_calloc(count, size);
+}
+
+void* realloc(void* memory, std::size_t size) noexcept {
+  ++calls;
+  return __libc_realloc(memory, size);
+}
+
+void* memalign(std::size_t alignment, std::size_t size) noexcept {
+  ++calls;
+  return __libc_memalign(alignment, size);
+}
+
+void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
+  ++calls;
+  return __libc_memalign(alignment, size);
+}
+
+int posix_memalign(void** memory, std::size_t alignment, std::size_t size) noexcept {
+  ++calls;
+  *memory = __libc_memalign(alignment, size);
+  return *memory == nullptr ? ENOMEM : 0;
+}
+
+void free(void* memory) noexcept {
+  calls += memory == nullptr ? 0 : 1;
+  __libc_free(memory);
+}
+}
+
+namespace tope::test {
+
+long heap_calls() noexcept { return calls; }
+
+NoAllocation::~NoAllocation() {
+  if (const long made = this->calls(); made > 0) {
+    BOOST_ERROR(what_ << ": " << made << " calls to the heap");
+  }
+}
+
+}  // namespace tope::test

@@ -1,0 +1,86 @@
+#include "support/reference_unilateral.hpp"
+
+#include "support/random_stack.hpp"
+
+#include <Eigen/SVD>
+#include <eiquadprog/eiquadprog-fast.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace tope::test {
+namespace {
+
+Matrix closed(const Matrix& open, const Matrix& a, double lock) {
+  const Eigen::JacobiSVD<Matrix> svd(a * open, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Eigen::Index n = open.rows();
+  Matrix keep = Matrix::Identity(n, n);
+  for (Eigen::Index i = 0; i < svd.singularValues().size(); ++i) {
+    const double x = std::min(1.0, svd.singularValues()[i] / lock);
+    const double locked = x * x * (3.0 - 2.0 * x);
+    const Vector v = svd.matrixV().col(i);
+    keep -= (1.0 - std::sqrt(1.0 - locked)) * v * v.transpose();
+  }
+  return open * keep;
+}
+
+}  // namespace
+
+Vector reference_bounded_least_squares(const Matrix& a, const Vector& r, double mu, const Matrix& d,
+                                       const Vector& lower, const Vector& upper) {
+  const Eigen::Index n = d.cols();
+  const Eigen::Index p = d.rows();
+  const Matrix hessian = a.transpose() * a + mu * Matrix::Identity(n, n);
+  const Vector gradient = -a.transpose() * r;
+  Matrix rows(2 * p, n);
+  rows << d, -d;
+  Vector offset(2 * p);
+  offset << -lower, upper;
+  eiquadprog::solvers::EiquadprogFast solver;
+  solver.reset(static_cast<std::size_t>(n), 0, static_cast<std::size_t>(2 * p));
+  Vector z = Vector::Zero(n);
+  const auto status = solver.solve_quadprog(hessian, gradient, Matrix(0, n), Vector(0), rows, offset, z);
+  if (status != eiquadprog::solvers::EIQUADPROG_FAST_OPTIMAL) {
+    throw std::runtime_error("eiquadprog: status " + std::to_string(status));
+  }
+  return z;
+}
+
+std::vector<ReferenceLevel> reference_unilateral(const Stack& stack, const Selection& selection,
+                                                 const Unilateral::Options& options) {
+  const int n = stack.size();
+  std::vector<ReferenceLevel> levels;
+  Matrix open = Matrix::Identity(n, n);
+  Vector y = Vector::Zero(n);
+  const int last = stack.tasks.empty() ? 0 : stack.tasks.back().level;
+  for (int level = 0; level <= last; ++level) {
+    const Matrix a = level_matrix(stack, selection, level);
+    if (level > 0 && a.rows() == 0) {
+      continue;
+    }
+    const double headroom = options.headroom / (1.0 + level);
+    ReferenceLevel entry{.level = level,
+                         .open = open,
+                         .lower = stack.motion_lower.array() + headroom,
+                         .upper = stack.motion_upper.array() - headroom,
+                         .a = a,
+                         .b = level_target(stack, selection, level),
+                         .singular = Vector(0),
+                         .y = y};
+    const Vector now = stack.motion * y;
+    const double mu = level == 0 ? 1.0 : options.damping * options.damping;
+    y += open * reference_bounded_least_squares(a * open, entry.b - a * y, mu, stack.motion * open,
+                                                entry.lower - now, entry.upper - now);
+    entry.y = y;
+    if (level > 0) {
+      entry.singular = Eigen::JacobiSVD<Matrix>(a * open).singularValues();
+      open = closed(open, a, options.lock);
+    }
+    levels.push_back(std::move(entry));
+  }
+  return levels;
+}
+
+}  // namespace tope::test
