@@ -19,16 +19,16 @@ int main() {
   tope::Controller controller{robot, {.mode = tope::Mode::velocity, .dt = dt}};
   const tope::Matrix3 goal_rotation =
       Eigen::Quaterniond(0.0397, 0.9811, 0.1867, -0.0322).normalized().matrix();
-  const tope::Vector3 goal_position(0.490, 0.105, 0.068);
+  const tope::Vector3 goal_position(0.640, 0.105, 0.068);
   const auto turn =
       controller.add(1, tope::FrameOrientation{robot, "ee", goal_rotation, tope::Exponential{2.0}});
   const auto reach =
       controller.add(2, tope::FramePosition{robot, "ee", goal_position, tope::Exponential{2.0}});
 
   tope::Vector q(robot.nq());
-  q << 0, 0, 0, 0, 0.4, 0.9, 0.6, 1.8;
+  q << 0.15, 0, 0, 0, 0.4, 0.9, 0.6, 1.8;
   tope::Vector v = tope::Vector::Zero(robot.nv());
-  for (int cycle = 0; cycle < 6000; ++cycle) {
+  for (int cycle = 0; cycle < 8000; ++cycle) {
     controller.update(q, v, cycle * dt, v);  // v: what was commanded last, then what is commanded next
     q += dt * v;                             // a robot that follows its velocity commands
   }

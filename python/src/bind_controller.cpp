@@ -26,10 +26,17 @@ void bind_options(nb::module_& module) {
   nb::class_<UnilateralOptions>(module, "UnilateralOptions", "Parameters of the method `unilateral`.")
       .def(
           "__init__",
-          [](UnilateralOptions* self, double damping, double lock, double headroom) {
-            new (self) UnilateralOptions{.damping = damping, .lock = lock, .headroom = headroom};
+          [](UnilateralOptions* self, double damping, double fine_damping, double fine_below, double lock,
+             double headroom) {
+            new (self) UnilateralOptions{.damping = damping,
+                                         .fine_damping = fine_damping,
+                                         .fine_below = fine_below,
+                                         .lock = lock,
+                                         .headroom = headroom};
           },
-          nb::kw_only(), "damping"_a = UnilateralOptions{}.damping, "lock"_a = UnilateralOptions{}.lock,
+          nb::kw_only(), "damping"_a = UnilateralOptions{}.damping,
+          "fine_damping"_a = UnilateralOptions{}.fine_damping,
+          "fine_below"_a = UnilateralOptions{}.fine_below, "lock"_a = UnilateralOptions{}.lock,
           "headroom"_a = UnilateralOptions{}.headroom);
   nb::class_<PotentialFieldOptions>(module, "PotentialFieldOptions",
                                     "Parameters of the method `potential_field`.")
@@ -110,6 +117,7 @@ void bind_controller(nb::module_& module) {
           [](Controller* self, const Robot& robot, const std::string& mode, double dt,
              const LimitOptions& limits, const std::vector<double>& joint_weights) {
             choice("mode", mode, {"velocity"});
+            robot.check_bounds();
             new (self) Controller(robot, {.mode = Mode::velocity,
                                           .dt = dt,
                                           .limits = limits,

@@ -2,10 +2,23 @@
 
 #include <tope/robot/robot.hpp>
 
+#include <nanobind/ndarray.h>
+
 namespace nb = nanobind;
 using namespace nb::literals;
 
 namespace tope::python {
+namespace {
+
+using Bounds = nb::ndarray<nb::numpy, double, nb::ndim<1>>;
+
+/// A writable view, so that single entries can be set; a controller checks the bounds when it copies the robot.
+Bounds view(Robot& robot, const Vector& bounds) {
+  auto* data = const_cast<double*>(bounds.data());  // NOLINT(cppcoreguidelines-pro-type-const-cast): robot is not const
+  return {data, {static_cast<std::size_t>(bounds.size())}, nb::find(robot)};
+}
+
+}  // namespace
 
 void bind_robot(nb::module_& module) {
   nb::class_<Robot>(module, "Robot", "A robot of revolute, continuous and prismatic joints, and its bounds.")
@@ -20,21 +33,19 @@ void bind_robot(nb::module_& module) {
       .def_prop_ro("nv", &Robot::nv)
       .def_prop_ro("joint_names", &Robot::joint_names)
       .def_prop_rw(
-          "position_lower", [](const Robot& robot) -> Vector { return robot.position_lower(); },
+          "position_lower", [](Robot& robot) { return view(robot, robot.position_lower()); },
           [](Robot& robot, const Vector& lower) { robot.set_position_limits(lower, robot.position_upper()); },
-          "Lower position limits (nv) [rad or m]; assign a whole vector to change them.")
+          "Lower position limits (nv) [rad or m].")
       .def_prop_rw(
-          "position_upper", [](const Robot& robot) -> Vector { return robot.position_upper(); },
+          "position_upper", [](Robot& robot) { return view(robot, robot.position_upper()); },
           [](Robot& robot, const Vector& upper) { robot.set_position_limits(robot.position_lower(), upper); },
-          "Upper position limits (nv) [rad or m]; assign a whole vector to change them.")
+          "Upper position limits (nv) [rad or m].")
       .def_prop_rw(
-          "velocity_limit", [](const Robot& robot) -> Vector { return robot.velocity_limit(); },
-          &Robot::set_velocity_limit,
-          "Speed bounds (nv) [rad/s or m/s]; assign a whole vector to change them.")
+          "velocity_limit", [](Robot& robot) { return view(robot, robot.velocity_limit()); },
+          &Robot::set_velocity_limit, "Speed bounds (nv) [rad/s or m/s].")
       .def_prop_rw(
-          "effort_limit", [](const Robot& robot) -> Vector { return robot.effort_limit(); },
-          &Robot::set_effort_limit,
-          "Torque or force bounds (nv) [Nm or N]; assign a whole vector to change them.")
+          "effort_limit", [](Robot& robot) { return view(robot, robot.effort_limit()); },
+          &Robot::set_effort_limit, "Torque or force bounds (nv) [Nm or N].")
       .def("__repr__", [](const Robot& robot) {
         return "tope.Robot('" + robot.name() + "', " + std::to_string(robot.nv()) + " joints)";
       });

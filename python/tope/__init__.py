@@ -21,7 +21,9 @@ from tope._core import (
     TaskHandle,
     UnilateralOptions,
 )
-from tope.simulation import Run, simulate
+from tope.compare import compare
+from tope.runs import Run
+from tope.simulation import load_run, simulate
 
 __version__ = "0.1.0"
 
@@ -46,5 +48,7 @@ __all__ = [
     "Task",
     "TaskHandle",
     "UnilateralOptions",
+    "compare",
+    "load_run",
     "simulate",
 ]

@@ -31,10 +31,20 @@ Unilateral::Unilateral(const Stack& stack, const Options& options)
       upper_(stack.size()),
       no_rows_(0, stack.size()),
       no_residual_(0) {
-  if (!(options.damping > 0.0 && options.lock > 0.0 && options.headroom > 0.0)) {
-    throw ConfigError("unilateral: damping, lock and headroom must be positive, got " +
-                      std::to_string(options.damping) + ", " + std::to_string(options.lock) + ", " +
-                      std::to_string(options.headroom));
+  const auto require_positive = [](const char* name, double value) {
+    if (!(std::isfinite(value) && value > 0.0)) {
+      throw ConfigError(std::string("unilateral: ") + name + " must be positive, got " +
+                        std::to_string(value));
+    }
+  };
+  require_positive("damping", options.damping);
+  require_positive("fine_damping", options.fine_damping);
+  require_positive("fine_below", options.fine_below);
+  require_positive("lock", options.lock);
+  require_positive("headroom", options.headroom);
+  if (options.fine_damping > options.damping) {
+    throw ConfigError("unilateral: fine_damping " + std::to_string(options.fine_damping) +
+                      " must not exceed damping " + std::to_string(options.damping));
   }
 }
 
@@ -59,14 +69,22 @@ void Unilateral::solve(const Stack& stack, const Selection& selection, Solution&
     residual_.head(m).noalias() -= rows_.a() * solution.y;
     motion_.noalias() = stack.motion * open_;
     set_bounds(stack, level, solution.y);
-    const bool solved = solver_.solve(task_.topRows(m), residual_.head(m),
-                                      options_.damping * options_.damping, motion_, lower_, upper_);
+    const bool solved =
+        solver_.solve(task_.topRows(m), residual_.head(m), squared_damping(residual_.head(m).squaredNorm()),
+                      motion_, lower_, upper_);
     solution.cut_off = solution.cut_off || !solved;
     solution.y.noalias() += open_ * solver_.z();
     if (i < stack.tasks.size()) {
       lock_level();
     }
   }
+}
+
+double Unilateral::squared_damping(double squared_residual) const {
+  const double fine = options_.fine_damping * options_.fine_damping;
+  const double full = options_.damping * options_.damping;
+  return fine +
+         (full - fine) * squared_residual / (squared_residual + options_.fine_below * options_.fine_below);
 }
 
 /// Bounds on T M z: the stack's, tightened by the level's headroom, less what y already uses.

@@ -45,6 +45,17 @@ void check_size(const Vector& values, int size, const std::string& what) {
   }
 }
 
+void check_position_limits(const Vector& lower, const Vector& upper, const std::vector<std::string>& joints) {
+  check_size(lower, static_cast<int>(joints.size()), "position_lower");
+  check_size(upper, static_cast<int>(joints.size()), "position_upper");
+  for (Eigen::Index j = 0; j < lower.size(); ++j) {
+    if (!(lower[j] < upper[j])) {
+      throw ConfigError("position limits of " + joints[static_cast<std::size_t>(j)] + ": lower " +
+                        std::to_string(lower[j]) + " must be below upper " + std::to_string(upper[j]));
+    }
+  }
+}
+
 void check_positive(const Vector& values, const std::vector<std::string>& joints, const std::string& what) {
   check_size(values, static_cast<int>(joints.size()), what);
   for (Eigen::Index j = 0; j < values.size(); ++j) {
@@ -124,14 +135,7 @@ int Robot::joint_index(const std::string& name) const { return index_of(name, jo
 int Robot::frame_index(const std::string& name) const { return index_of(name, frame_names_, "frame"); }
 
 void Robot::set_position_limits(const Vector& lower, const Vector& upper) {
-  check_size(lower, nq(), "position_lower");
-  check_size(upper, nq(), "position_upper");
-  for (int j = 0; j < nq(); ++j) {
-    if (!(lower[j] < upper[j])) {
-      throw ConfigError("position limits of " + joint_names_[static_cast<std::size_t>(j)] + ": lower " +
-                        std::to_string(lower[j]) + " must be below upper " + std::to_string(upper[j]));
-    }
-  }
+  check_position_limits(lower, upper, joint_names_);
   position_lower_ = lower;
   position_upper_ = upper;
 }
@@ -144,6 +148,12 @@ void Robot::set_velocity_limit(const Vector& limit) {
 void Robot::set_effort_limit(const Vector& limit) {
   check_positive(limit, joint_names_, "effort_limit");
   effort_limit_ = limit;
+}
+
+void Robot::check_bounds() const {
+  check_position_limits(position_lower_, position_upper_, joint_names_);
+  check_positive(velocity_limit_, joint_names_, "velocity_limit");
+  check_positive(effort_limit_, joint_names_, "effort_limit");
 }
 
 }  // namespace tope

@@ -73,6 +73,8 @@ LimitOptions read_limits(const YamlReader& yaml, Robot& robot) {
   }
   if (const auto law = yaml.optional_map("unilateral")) {
     limits.unilateral.damping = law->positive("damping", limits.unilateral.damping);
+    limits.unilateral.fine_damping = law->positive("fine_damping", limits.unilateral.fine_damping);
+    limits.unilateral.fine_below = law->positive("fine_below", limits.unilateral.fine_below);
     limits.unilateral.lock = law->positive("lock", limits.unilateral.lock);
     limits.unilateral.headroom = law->positive("headroom", limits.unilateral.headroom);
     law->finish();

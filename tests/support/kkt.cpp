@@ -8,12 +8,31 @@
 namespace tope::test {
 namespace {
 
-/// Least-squares multipliers of the chosen rows, zero for the others.
-Vector fit(const Matrix& columns, const Vector& target, const std::vector<Eigen::Index>& chosen) {
+using Rows = std::vector<Eigen::Index>;
+
+/// Least-squares multipliers of the chosen columns, zero for the others.
+Vector fit(const Matrix& columns, const Vector& target, const Rows& chosen) {
+  Matrix part(columns.rows(), static_cast<Eigen::Index>(chosen.size()));
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    part.col(static_cast<Eigen::Index>(i)) = columns.col(chosen[i]);
+  }
+  const Vector values = part.completeOrthogonalDecomposition().solve(target);
   Vector result = Vector::Zero(columns.cols());
-  const Matrix part = columns(Eigen::all, chosen);
-  result(chosen) = part.completeOrthogonalDecomposition().solve(target);
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    result[chosen[i]] = values[static_cast<Eigen::Index>(i)];
+  }
   return result;
+}
+
+/// Share of the way to `next` on which every chosen multiplier stays positive.
+double feasible_step(const Vector& multipliers, const Vector& next, const Rows& chosen) {
+  double step = 1.0;
+  for (const Eigen::Index i : chosen) {
+    if (next[i] <= 0.0) {
+      step = std::min(step, multipliers[i] / (multipliers[i] - next[i]));
+    }
+  }
+  return step;
 }
 
 }  // namespace
@@ -22,23 +41,20 @@ double stationarity_residual(const Vector& gradient, const Matrix& normals) {
   const Matrix columns = normals.transpose();
   const Vector target = -gradient;
   Vector multipliers = Vector::Zero(columns.cols());
-  std::vector<Eigen::Index> chosen;
+  Rows chosen;
   for (Eigen::Index round = 0; round < 3 * columns.cols(); ++round) {
     Vector slope = columns.transpose() * (target - columns * multipliers);
-    slope(chosen).setConstant(-1.0);
+    for (const Eigen::Index i : chosen) {
+      slope[i] = -1.0;
+    }
     Eigen::Index steepest = 0;
-    if (slope.size() == 0 || slope.maxCoeff(&steepest) < 1e-13) {
+    if (slope.maxCoeff(&steepest) < 1e-13) {
       break;
     }
     chosen.push_back(steepest);
     Vector next = fit(columns, target, chosen);
-    while (!chosen.empty() && next(chosen).minCoeff() <= 0.0) {
-      double step = 1.0;
-      for (const Eigen::Index i : chosen) {
-        if (next[i] <= 0.0) {
-          step = std::min(step, multipliers[i] / (multipliers[i] - next[i]));
-        }
-      }
+    for (double step = feasible_step(multipliers, next, chosen); step < 1.0;
+         step = feasible_step(multipliers, next, chosen)) {
       multipliers += step * (next - multipliers);
       std::erase_if(chosen, [&](Eigen::Index i) { return multipliers[i] <= 1e-15; });
       next = fit(columns, target, chosen);

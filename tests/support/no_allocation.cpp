@@ -13,11 +13,11 @@ thread_local long calls = 0;
 
 // glibc's own functions under the names it keeps for replacements
 extern "C" {
-void* __libc_malloc(std::size_t size);                          // NOLINT(bugprone-reserved-identifier)
-void* __libc_calloc(std::size_t count, std::size_t size);       // NOLINT(bugprone-reserved-identifier)
-void* __libc_realloc(void* memory, std::size_t size);           // NOLINT(bugprone-reserved-identifier)
+void* __libc_malloc(std::size_t size);                           // NOLINT(bugprone-reserved-identifier)
+void* __libc_calloc(std::size_t count, std::size_t size);        // NOLINT(bugprone-reserved-identifier)
+void* __libc_realloc(void* memory, std::size_t size);            // NOLINT(bugprone-reserved-identifier)
 void* __libc_memalign(std::size_t alignment, std::size_t size);  // NOLINT(bugprone-reserved-identifier)
-void __libc_free(void* memory);                                 // NOLINT(bugprone-reserved-identifier)
+void __libc_free(void* memory);                                  // NOLINT(bugprone-reserved-identifier)
 
 void* malloc(std::size_t size) noexcept {
   ++calls;

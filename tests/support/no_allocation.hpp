@@ -4,8 +4,9 @@
 
 namespace tope::test {
 
-/// Calls to the heap that this thread made so far: malloc, calloc, realloc, aligned_alloc, memalign, posix_memalign, and
-/// free of anything but null. The executable replaces these functions, so calls from shared libraries count as well.
+/// Calls to the heap that this thread made so far: malloc, calloc, realloc, aligned_alloc, memalign,
+/// posix_memalign, and free of anything but null. The executable replaces these functions, so calls from
+/// shared libraries count as well.
 long heap_calls() noexcept;
 
 /// Fails the test when this thread calls the heap while the guard lives. Guards may be nested.

@@ -81,13 +81,17 @@ Stack StackPath::at(double s) const {
   stack.motion_upper = 0.1 + room.col(0).array().square();
   stack.motion_lower = -0.1 - room.col(1).array().square();
   for (std::size_t i = 0; i < a_.size(); ++i) {
-    stack.tasks.push_back({.level = static_cast<int>(i) + 1, .activation = 1.0, .a = a_[i].at(s), .b = b_[i].at(s)});
+    stack.tasks.push_back({.level = static_cast<int>(i) + 1,
+                           .activation = activation[n_ + static_cast<int>(i)],
+                           .a = a_[i].at(s),
+                           .b = b_[i].at(s)});
   }
   if (rank_changing_) {
     TaskRows& first = stack.tasks[0];
-    first.a.row(1) = first.a.row(0) + 2.0 * (s - 0.3) * first.a.row(1);                           // dependent
-    stack.tasks[1].a.row(0) *= 2.0 * (s - 0.5);                                                   // vanishing
-    stack.tasks[2].a.row(1) = first.a.row(0) + 2.0 * (s - 0.7) * stack.tasks[2].a.row(1).eval();  // taken above
+    first.a.row(1) = first.a.row(0) + 2.0 * (s - 0.3) * first.a.row(1);  // dependent
+    stack.tasks[1].a.row(0) *= 2.0 * (s - 0.5);                          // vanishing
+    stack.tasks[2].a.row(1) =
+        first.a.row(0) + 2.0 * (s - 0.7) * stack.tasks[2].a.row(1).eval();  // taken above
   }
   return stack;
 }

@@ -18,7 +18,9 @@ double Random::normal() {
   return radius * std::cos(2.0 * std::numbers::pi * uniform(0.0, 1.0));
 }
 
-int Random::integer(int low, int high) { return low + static_cast<int>(uniform(0.0, 1.0) * (high - low + 1)); }
+int Random::integer(int low, int high) {
+  return low + static_cast<int>(uniform(0.0, 1.0) * (high - low + 1));
+}
 
 Vector Random::vector(int n, double scale) {
   return Vector::NullaryExpr(n, [&] { return scale * normal(); });
@@ -50,7 +52,9 @@ Matrix Random::positive_definite(int n, double low, double high) {
   return 0.5 * (product + product.transpose());
 }
 
-Matrix3 Random::rotation() { return Eigen::Quaterniond(Eigen::Vector4d(vector(4).normalized())).toRotationMatrix(); }
+Matrix3 Random::rotation() {
+  return Eigen::Quaterniond(Eigen::Vector4d(vector(4).normalized())).toRotationMatrix();
+}
 
 Vector3 Random::unit() { return Vector3(vector(3)).normalized(); }
 

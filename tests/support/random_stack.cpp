@@ -7,7 +7,8 @@
 namespace tope::test {
 namespace {
 
-TaskRows random_task(Random& random, const RandomStackOptions& options, int level, const std::vector<TaskRows>& above) {
+TaskRows random_task(Random& random, const RandomStackOptions& options, int level,
+                     const std::vector<TaskRows>& above) {
   const int rows = random.integer(1, std::max(1, std::min(6, options.n / 2)));
   const int full = std::min(rows, options.n);
   const int rank = random.chance(options.deficient) ? random.integer(1, full) : full;
@@ -16,7 +17,8 @@ TaskRows random_task(Random& random, const RandomStackOptions& options, int leve
                 .a = random.matrix_of_rank(rows, options.n, rank, 0.5, 2.0),
                 .b = random.vector(rows)};
   if (!above.empty() && random.chance(options.deficient)) {
-    const TaskRows& other = above[static_cast<std::size_t>(random.integer(0, static_cast<int>(above.size()) - 1))];
+    const TaskRows& other =
+        above[static_cast<std::size_t>(random.integer(0, static_cast<int>(above.size()) - 1))];
     task.a.row(0) = random.uniform(0.5, 2.0) * other.a.row(0);
   }
   return task;

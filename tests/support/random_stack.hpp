@@ -12,8 +12,8 @@ struct RandomStackOptions {
   int limit_transitions = 0;  ///< limit rows with an activation strictly between 0 and 1
   int task_transitions = 0;
   double complete_limits = 0.2;  ///< share of the other limit rows that are active
-  double deficient = 0.3;        ///< share of tasks of deficient rank, and of tasks that repeat rows of others
-  bool beyond = false;           ///< some motion bounds exclude zero
+  double deficient = 0.3;  ///< share of tasks of deficient rank, and of tasks that repeat rows of others
+  bool beyond = false;     ///< some motion bounds exclude zero
 };
 
 /// A stack of random tasks; several may share a level. Sizes of the problem stay near one.

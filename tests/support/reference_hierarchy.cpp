@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kLost = 1e-7;  // singular value below which a direction is gone
 
-/// Minimises |rows y - target| on y + span(basis), takes the shortest step, and closes the directions it used.
+/// Minimises |rows y - target| on y + span(basis), takes the shortest step, and closes the directions it
+/// used.
 double fit(const Matrix& rows, const Vector& target, Vector& y, Matrix& basis) {
   if (rows.rows() == 0 || basis.cols() == 0) {
     return 1.0;
@@ -28,8 +29,8 @@ double fit(const Matrix& rows, const Vector& target, Vector& y, Matrix& basis) {
 
 }  // namespace
 
-ReferenceHierarchy reference_hierarchy(const Stack& stack, const Selection& selection, const Vector& limit_target,
-                                       double epsilon) {
+ReferenceHierarchy reference_hierarchy(const Stack& stack, const Selection& selection,
+                                       const Vector& limit_target, double epsilon) {
   const int n = stack.size();
   ReferenceHierarchy result{.y = Vector::Zero(n)};
   Matrix basis = Matrix::Identity(n, n);

@@ -13,6 +13,13 @@
 namespace tope::test {
 namespace {
 
+/// Weight of |z|^2: damping^2 far from the goal, fine_damping^2 at it.
+double weight(const Unilateral::Options& options, const Vector& residual) {
+  const double r = residual.norm() / options.fine_below;
+  const double far = r * r / (1.0 + r * r);
+  return far * std::pow(options.damping, 2) + (1.0 - far) * std::pow(options.fine_damping, 2);
+}
+
 Matrix closed(const Matrix& open, const Matrix& a, double lock) {
   const Eigen::JacobiSVD<Matrix> svd(a * open, Eigen::ComputeThinU | Eigen::ComputeThinV);
   const Eigen::Index n = open.rows();
@@ -61,17 +68,18 @@ std::vector<ReferenceLevel> reference_unilateral(const Stack& stack, const Selec
       continue;
     }
     const double headroom = options.headroom / (1.0 + level);
-    ReferenceLevel entry{.level = level,
-                         .open = open,
-                         .lower = stack.motion_lower.array() + headroom,
-                         .upper = stack.motion_upper.array() - headroom,
-                         .a = a,
-                         .b = level_target(stack, selection, level),
-                         .singular = Vector(0),
-                         .y = y};
+    ReferenceLevel entry{
+        .level = level,
+        .open = open,
+        .lower = stack.motion_lower.array() + headroom,
+        .upper = stack.motion_upper.array() - headroom,
+        .mu = level == 0 ? 1.0 : weight(options, level_target(stack, selection, level) - a * y),
+        .a = a,
+        .b = level_target(stack, selection, level),
+        .singular = Vector(0),
+        .y = y};
     const Vector now = stack.motion * y;
-    const double mu = level == 0 ? 1.0 : options.damping * options.damping;
-    y += open * reference_bounded_least_squares(a * open, entry.b - a * y, mu, stack.motion * open,
+    y += open * reference_bounded_least_squares(a * open, entry.b - a * y, entry.mu, stack.motion * open,
                                                 entry.lower - now, entry.upper - now);
     entry.y = y;
     if (level > 0) {

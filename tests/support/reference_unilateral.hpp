@@ -7,7 +7,8 @@
 
 namespace tope::test {
 
-/// min |A z - r|^2 + mu |z|^2 subject to lower <= D z <= upper, by eiquadprog. Throws when it finds no optimum.
+/// min |A z - r|^2 + mu |z|^2 subject to lower <= D z <= upper, by eiquadprog. Throws when it finds no
+/// optimum.
 Vector reference_bounded_least_squares(const Matrix& a, const Vector& r, double mu, const Matrix& d,
                                        const Vector& lower, const Vector& upper);
 
@@ -17,10 +18,11 @@ struct ReferenceLevel {
   Matrix open;   ///< M as the level finds it (n x n)
   Vector lower;  ///< tightened bounds on T y (n)
   Vector upper;
-  Matrix a;        ///< its tasks' rows (m x n), none at level 0
-  Vector b;        ///< (m)
-  Vector singular; ///< singular values of A M
-  Vector y;        ///< after the level
+  double mu = 1.0;  ///< weight of |z|^2
+  Matrix a;         ///< its tasks' rows (m x n), none at level 0
+  Vector b;         ///< (m)
+  Vector singular;  ///< singular values of A M
+  Vector y;         ///< after the level
 };
 
 /// The unilateral law by singular value decompositions and eiquadprog, level by level from 0.

@@ -4,11 +4,10 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include <unistd.h>
-
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
+#include <unistd.h>
 
 namespace tope::test {
 

@@ -9,9 +9,9 @@ namespace tope {
 /// Strict hierarchy of equalities, (14)-(15) in whitened coordinates, continuous through singularities.
 ///
 /// Limit rows are level 0 and never damped: y = C^+ target, N = I - C^+ C. Then for each level, with
-///   B = A A^T + eps^2 I = L L^T,   G = L^-1 A N A^T L^-T with eigenpairs (rho, v),   residual r = L^-1 (b -
-///   A y): y <- y + N A^T L^-T  sum g(rho) v v^T r,        g = 1 / (rho + rho_0 max(0, 1 - rho / rho_0)^2) N
-///   <- N - sum s(rho)/rho (N A^T L^-T v)(...)^T,  s a smooth step from 0 to 1 on [0, rho_lock]
+///   B = A A^T + eps^2 I = L L^T,   G = L^-1 A N A^T L^-T with eigenpairs (rho, v),   r = L^-1 (b - A y):
+///   y <- y + N A^T L^-T sum g(rho) v v^T r,             g = 1 / (rho + rho_0 max(0, 1 - rho / rho_0)^2)
+///   N <- N - sum s(rho) / rho (N A^T L^-T v)(...)^T,    s a smooth step from 0 to 1 on [0, rho_lock]
 /// rho in [0, 1) says how much of a task direction is left, whether the arm or a higher level took it. Where
 /// every rho >= rho_0 this is the undamped law; where rows conflict or are deficient it is least squares in
 /// the metric B^-1.
@@ -19,9 +19,8 @@ class Hierarchy final : public StackLaw {
  public:
   struct Options {
     double damped_below = 0.05;  ///< rho_0: directions with less left than this are damped
-    double locked_above =
-        0.02;  ///< rho_lock < rho_0: directions with more left than this are closed to lower levels
-    double epsilon = 0.1;  ///< eps, in units of the whitened rows
+    double locked_above = 0.02;  ///< rho_lock < rho_0: those with more left are closed to lower levels
+    double epsilon = 0.1;        ///< eps, in units of the whitened rows
   };
 
   /// Errors: ConfigError unless 0 < locked_above < damped_below < 1 and epsilon > 0.

@@ -7,33 +7,39 @@
 
 namespace tope {
 
-/// Strict priority under bounds that hold as true inequalities: lower <= T y <= upper, whatever the tasks
-/// ask.
+/// Strict priority under bounds that hold as true inequalities: lower <= T y <= upper, whatever the tasks ask.
 ///
 /// Level 0: y = least-norm point inside the bounds. Then for each level k, with M = I at first:
-///   z = argmin |A_k (y + M z) - b_k|^2 + damping^2 |z|^2   subject to lower + eta_k <= T (y + M z) <= upper
-///   - eta_k y <- y + M z M <- M (I - sum (1 - sqrt(1 - s(sigma))) v v^T),   sigma, v singular values and
-///   right vectors of A_k M
-/// with s a smooth step from 0 at sigma = 0 to 1 at `lock`, and headroom eta_k = headroom / (1 + k) for level
-/// number k. The damping makes each level strictly convex, the soft lock hands a lost direction down
-/// gradually, the shrinking headroom leaves every level an interior: together they make the command
-/// continuous in the state. Where sigma >= lock, priority is exact. z = 0 is feasible at every level, so a
-/// cut-off costs task accuracy and no limit.
+///   z = argmin |A_k (y + M z) - b_k|^2 + lambda^2 |z|^2
+///       subject to lower + eta_k <= T (y + M z) <= upper - eta_k
+///   y <- y + M z
+///   M <- M (I - sum (1 - sqrt(1 - s(sigma))) v v^T),   sigma, v singular values and right vectors of A_k M
+/// with s a smooth step from 0 at sigma = 0 to 1 at `lock`, and eta_k = headroom / (1 + k) for level number k.
+///
+/// The damping lambda makes each level strictly convex, the soft lock hands a lost direction down gradually, and the
+/// shrinking headroom leaves every level an interior: together they make the command continuous in the state.
+/// Where sigma >= lock, priority is exact. Lambda falls with the level's residual r = |b_k - A_k y|, as in
+/// Sugihara's Levenberg-Marquardt method (2011), so that a goal near a singularity is still reached in time:
+///   lambda^2 = fine^2 + (damping^2 - fine^2) r^2 / (r^2 + fine_below^2)
+/// z = 0 is feasible at every level, so a cut-off costs task accuracy and no limit.
 class Unilateral final : public StackLaw {
  public:
   struct Options {
-    double damping = 0.05;   ///< lambda, in units of the whitened rows
-    double lock = 0.1;       ///< sigma_lock, in the same units
-    double headroom = 0.01;  ///< eta, in units of the motion [rad/s or m/s; rad/s2 or m/s2]
+    double damping = 0.05;       ///< lambda far from the goal, in units of the whitened rows
+    double fine_damping = 0.02;  ///< lambda at the goal
+    double fine_below = 0.05;    ///< residual between the two, in units of the task's rate [rad/s or m/s]
+    double lock = 0.1;           ///< sigma_lock, in units of the whitened rows
+    double headroom = 0.01;      ///< eta, in units of the motion [rad/s or m/s]
   };
 
-  /// Errors: ConfigError unless all three options are positive.
+  /// Errors: ConfigError unless all options are positive and fine_damping <= damping.
   Unilateral(const Stack& stack, const Options& options);
 
   /// The bounds apply whatever is selected; selection.limits has no part in this law.
   void solve(const Stack& stack, const Selection& selection, Solution& solution) override;
 
  private:
+  double squared_damping(double squared_residual) const;
   void set_bounds(const Stack& stack, int level, const Vector& y);
   void lock_level();
 

@@ -67,6 +67,8 @@ class Robot {
   void set_position_limits(const Vector& lower, const Vector& upper);
   void set_velocity_limit(const Vector& limit);
   void set_effort_limit(const Vector& limit);
+  /// Checks all bounds as the setters do.
+  void check_bounds() const;
 
   const std::optional<MecanumBase>& base() const { return base_; }
   const RobotModel& model() const { return *model_; }

@@ -1,0 +1,216 @@
+// Unilateral: the optimality conditions of every level and a dense reference with eiquadprog on random
+// stacks; bounds, priority, the level of the limits alone, continuity. Not here: its behaviour in closed loop
+// (controller room).
+#include "support/kkt.hpp"
+#include "support/path.hpp"
+#include "support/random_stack.hpp"
+#include "support/reference_unilateral.hpp"
+#include "support/text.hpp"
+
+#include <tope/law/unilateral.hpp>
+
+#include <Eigen/QR>
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+
+namespace tope::test {
+namespace {
+
+const Unilateral::Options defaults;
+
+Solution solve(const Stack& stack, const Unilateral::Options& options = defaults) {
+  Unilateral law(stack, options);
+  Solution solution(stack.size());
+  law.solve(stack, select_all_tasks(stack), solution);
+  return solution;
+}
+
+/// Calls `check` with random stacks, deficient ranks and states beyond a limit among them.
+template <typename Check>
+void on_random_stacks(int seeds, Check check) {
+  for (int seed = 0; seed < seeds; ++seed) {
+    BOOST_TEST_CONTEXT("seed " << seed) {
+      Random random(seed);
+      RandomStackOptions options;
+      options.n = random.integer(3, 40);
+      options.levels = random.integer(1, 4);
+      options.beyond = random.chance(0.3);
+      check(random_stack(random, options));
+    }
+  }
+}
+
+double infinity_norm(const Vector& v) { return v.lpNorm<Eigen::Infinity>(); }
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(unilateral)
+
+BOOST_AUTO_TEST_CASE(equals_dense_reference) {
+  double largest = 0.0;
+  on_random_stacks(200, [&](const Stack& stack) {
+    const Solution solution = solve(stack);
+    BOOST_TEST(!solution.cut_off);
+    const auto levels = reference_unilateral(stack, select_all_tasks(stack), defaults);
+    const double error = infinity_norm(solution.y - levels.back().y);
+    BOOST_TEST(error <= 1e-8);
+    BOOST_TEST(infinity_norm(solution.y_limits - levels.front().y) <= 1e-8);
+    largest = std::max(largest, error);
+  });
+  BOOST_TEST_MESSAGE("largest deviation " << largest);
+}
+
+BOOST_AUTO_TEST_CASE(every_level_is_optimal) {
+  KktResidual worst;
+  on_random_stacks(100, [&](const Stack& stack) {
+    // the library's own answer after each level, from the stack cut off below it
+    Vector above = Vector::Zero(stack.size());
+    for (const ReferenceLevel& level : reference_unilateral(stack, select_all_tasks(stack), defaults)) {
+      const Vector y = solve(truncated(stack, level.level)).y;
+      const Vector z = level.open.completeOrthogonalDecomposition().solve(y - above);
+      BOOST_TEST(infinity_norm(level.open * z - (y - above)) <= 1e-9);
+      const Vector now = stack.motion * above;
+      const KktResidual kkt =
+          kkt_residual(level.a * level.open, level.b - level.a * above, level.mu, stack.motion * level.open,
+                       level.lower - now, level.upper - now, z, 1e-8);
+      BOOST_TEST(kkt.feasibility <= 1e-8);
+      BOOST_TEST(kkt.stationarity <= 1e-8);
+      worst.feasibility = std::max(worst.feasibility, kkt.feasibility);
+      worst.stationarity = std::max(worst.stationarity, kkt.stationarity);
+      above = y;
+    }
+  });
+  BOOST_TEST_MESSAGE("beyond a bound " << worst.feasibility << ", stationarity " << worst.stationarity);
+}
+
+BOOST_AUTO_TEST_CASE(takes_levels_with_more_rows_than_unknowns) {
+  for (int seed = 0; seed < 20; ++seed) {
+    BOOST_TEST_CONTEXT("seed " << seed) {
+      Random random(seed);
+      Stack stack = random_stack(random, {.n = 5, .levels = 3});
+      stack.tasks.push_back(
+          {.level = 3, .activation = 1.0, .a = Matrix::Identity(5, 5), .b = random.vector(5)});
+      stack.tasks.push_back({.level = 3, .activation = 1.0, .a = random.matrix(9, 5), .b = random.vector(9)});
+      stack.tasks.push_back({.level = 4, .activation = 1.0, .a = random.matrix(2, 5), .b = random.vector(2)});
+      const auto levels = reference_unilateral(stack, select_all_tasks(stack), defaults);
+      BOOST_TEST(infinity_norm(solve(stack).y - levels.back().y) <= 1e-8);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(bounds_hold) {
+  on_random_stacks(200, [](const Stack& stack) {
+    const Vector motion = stack.motion * solve(stack).y;
+    BOOST_TEST((motion - stack.motion_upper).maxCoeff() <= 0.0);
+    BOOST_TEST((stack.motion_lower - motion).maxCoeff() <= 0.0);
+  });
+}
+
+BOOST_AUTO_TEST_CASE(bounds_hold_against_any_demand) {
+  on_random_stacks(100, [](Stack stack) {
+    for (TaskRows& task : stack.tasks) {
+      task.b *= 1e6;
+    }
+    const Solution solution = solve(stack);
+    const Vector motion = stack.motion * solution.y;
+    BOOST_TEST(!solution.cut_off);
+    BOOST_TEST((motion - stack.motion_upper).maxCoeff() <= 0.0);
+    BOOST_TEST((stack.motion_lower - motion).maxCoeff() <= 0.0);
+  });
+}
+
+BOOST_AUTO_TEST_CASE(lower_levels_leave_higher_ones_alone) {
+  double largest = 0.0;
+  int checked = 0;
+  on_random_stacks(200, [&](const Stack& stack) {
+    const Vector y = solve(stack).y;
+    for (const ReferenceLevel& level : reference_unilateral(stack, select_all_tasks(stack), defaults)) {
+      // exact where every direction is held (sigma >= lock) or lost altogether
+      const auto between = level.singular.array() > 1e-9 && level.singular.array() < defaults.lock;
+      if (level.level == 0 || between.any()) {
+        continue;
+      }
+      const Vector alone = solve(truncated(stack, level.level)).y;
+      const double change = infinity_norm(level.a * (y - alone));
+      BOOST_TEST(change <= 1e-9);
+      largest = std::max(largest, change);
+      ++checked;
+    }
+  });
+  BOOST_TEST(checked >= 200);
+  BOOST_TEST_MESSAGE(checked << " levels, largest change of a higher level " << largest);
+}
+
+BOOST_AUTO_TEST_CASE(without_tasks_takes_the_shortest_command_inside_the_bounds) {
+  Stack stack(3);
+  stack.motion_lower << -1.0, 0.2, -2.0;
+  stack.motion_upper << 1.0, 1.0, -0.5;
+  Unilateral law(stack, defaults);
+  Solution solution(3);
+  law.solve(stack, Selection(stack), solution);
+  const Vector expected = (Vector(3) << 0.0, 0.2 + defaults.headroom, -0.5 - defaults.headroom).finished();
+  BOOST_TEST(infinity_norm(solution.y - expected) <= 1e-10);
+  BOOST_TEST(infinity_norm(solution.y_limits - expected) <= 1e-10);
+}
+
+BOOST_AUTO_TEST_CASE(takes_infinite_bounds) {
+  Random random(7);
+  Stack stack = random_stack(random, {.n = 6, .levels = 2, .deficient = 0.0});
+  stack.motion_lower.setConstant(-INFINITY);
+  stack.motion_upper.setConstant(INFINITY);
+  const Solution solution = solve(stack);
+  BOOST_TEST(!solution.cut_off);
+  // the first level is damped least squares, and the second leaves it alone
+  const ReferenceLevel first = reference_unilateral(stack, select_all_tasks(stack), defaults)[1];
+  const Matrix damped = first.a.transpose() * first.a + first.mu * Matrix::Identity(6, 6);
+  const Vector expected = first.a * damped.ldlt().solve(first.a.transpose() * first.b);
+  BOOST_TEST(infinity_norm(first.a * solution.y - expected) <= 1e-9);
+}
+
+BOOST_AUTO_TEST_CASE(limit_rows_have_no_part) {
+  Random random(8);
+  Stack stack = random_stack(random, {.n = 8, .levels = 2});
+  const Vector y = solve(stack).y;
+  stack.limit_activation.setOnes();
+  stack.limit_target.setConstant(9.0);
+  BOOST_TEST(infinity_norm(solve(stack).y - y) == 0.0);
+}
+
+BOOST_AUTO_TEST_CASE(is_continuous_along_smooth_paths) {
+  double lowest_ratio = INFINITY;
+  double left = 0.0;
+  for (int seed = 0; seed < 20; ++seed) {
+    BOOST_TEST_CONTEXT("seed " << seed) {
+      Random random(seed);
+      const StackPath path(random, 6, seed % 2 == 0);
+      const auto command = [&](double s) { return solve(path.at(s)).y; };
+      const double ratio = largest_jump(command, 500) / largest_jump(command, 5000);
+      BOOST_TEST(ratio >= 8.0);
+      lowest_ratio = std::min(lowest_ratio, ratio);
+      left = std::max(left, jump_left_after(command, 500, 5));
+      BOOST_TEST(left <= 1e-5);
+    }
+  }
+  BOOST_TEST_MESSAGE("lowest ratio " << lowest_ratio << ", largest change left " << left);
+}
+
+BOOST_AUTO_TEST_CASE(refuses_bad_options) {
+  const Stack stack(2);
+  const auto refuse = [&](double Unilateral::Options::* member, double value, const std::string& name) {
+    Unilateral::Options bad;
+    bad.*member = value;
+    check_error([&] { const Unilateral law(stack, bad); }, {"unilateral: " + name});
+  };
+  refuse(&Unilateral::Options::damping, 0.0, "damping must be positive");
+  refuse(&Unilateral::Options::fine_damping, -0.1, "fine_damping must be positive");
+  refuse(&Unilateral::Options::fine_below, 0.0, "fine_below must be positive");
+  refuse(&Unilateral::Options::lock, -0.1, "lock must be positive");
+  refuse(&Unilateral::Options::headroom, NAN, "headroom must be positive");
+  refuse(&Unilateral::Options::headroom, INFINITY, "headroom must be positive");
+  refuse(&Unilateral::Options::fine_damping, 0.5, "fine_damping 0.500000 must not exceed damping");
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+}  // namespace tope::test

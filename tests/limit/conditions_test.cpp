@@ -1,0 +1,123 @@
+// The sampled-time inequalities: which methods ask for which, their numbers and advice; and that a joint driven at full
+// speed stays inside at the longest period they allow.
+#include "support/robots.hpp"
+
+#include <tope/limit/conditions.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace tope::test {
+namespace {
+
+constexpr int kJoint = 4;  // arm_joint_2
+
+std::vector<Condition> conditions(const JointLimitOptions& options, LimitMethod method, double dt,
+                                  double headroom = 0.01) {
+  const Robot robot = youbot();
+  return velocity_conditions(robot, JointLimits(robot, options), method, headroom, dt);
+}
+
+const Condition* find(const std::vector<Condition>& list, const std::string& name, const std::string& joint) {
+  const auto found = std::find_if(list.begin(), list.end(), [&](const Condition& c) {
+    return c.name.find(name) != std::string::npos && c.joint == joint;
+  });
+  return found == list.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(limit_conditions)
+
+BOOST_AUTO_TEST_CASE(defaults_are_safe_at_a_kilohertz) {
+  for (const std::string& name : limit_method_names()) {
+    for (const Condition& condition : conditions({}, limit_method_from(name), 1e-3)) {
+      BOOST_TEST(condition.holds(), name << ": " << condition.name << " " << condition.joint);
+      BOOST_TEST(condition.margin() == condition.bound - condition.value);
+      BOOST_TEST(!condition.advice.empty());
+    }
+  }
+  BOOST_TEST(conditions({}, LimitMethod::none, 1.0).empty());
+}
+
+BOOST_AUTO_TEST_CASE(servo_must_be_stable) {
+  const auto list = conditions({.buffers = {}, .gain = 10.0}, LimitMethod::chain, 0.2);
+  const Condition* servo = find(list, "servo", "");
+  BOOST_REQUIRE(servo != nullptr);
+  BOOST_TEST(!servo->holds());
+  BOOST_TEST(servo->value == 2.0);
+  BOOST_TEST(servo->bound == 1.0);
+  BOOST_TEST(servo->advice.find("at most 5 1/s") != std::string::npos);
+  BOOST_TEST(servo->advice.find("at most 0.1 s") != std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(buffers_must_be_wide) {
+  const double v_max = youbot().velocity_limit()[kJoint];
+  for (const Ramp shape : {Ramp::raised_cosine, Ramp::quintic}) {
+    const auto list = conditions({.buffers = {}, .gain = 1.0, .ramp = shape}, LimitMethod::chain, 0.06);
+    const Condition* buffer = find(list, "buffer", "arm_joint_2");
+    BOOST_REQUIRE(buffer != nullptr);
+    BOOST_TEST(buffer->value == ramp_slope_factor(shape) * 0.06 * v_max, boost::test_tools::tolerance(1e-12));
+    BOOST_TEST(buffer->bound == 0.1);
+    BOOST_TEST(!buffer->holds());
+    BOOST_TEST(buffer->advice.find("arm_joint_2") != std::string::npos);
+    BOOST_TEST(buffer->advice.find(" rad ") != std::string::npos);
+    BOOST_TEST(find(list, "buffer", "base_yaw") == nullptr);  // without limits
+  }
+}
+
+BOOST_AUTO_TEST_CASE(unilateral_needs_its_headroom_inside_the_bounds) {
+  const double v_max = youbot().velocity_limit()[kJoint];
+  const auto list = conditions({}, LimitMethod::unilateral, 1e-3, 0.3 * v_max);
+  const Condition* headroom = find(list, "headroom", "arm_joint_2");
+  BOOST_REQUIRE(headroom != nullptr);
+  BOOST_TEST(!headroom->holds());
+  BOOST_TEST(headroom->bound == 0.5 * v_max);
+  BOOST_TEST(find(list, "buffer", "arm_joint_2") == nullptr);
+}
+
+BOOST_AUTO_TEST_CASE(rows_keep_a_joint_inside_at_the_longest_period) {
+  // the blended row against a task that drives the joint outwards at full speed, from every place in the buffer
+  Robot robot = youbot();
+  const double v_max = robot.velocity_limit()[kJoint];
+  const double upper = robot.position_upper()[kJoint];
+  for (const Ramp shape : {Ramp::raised_cosine, Ramp::quintic}) {
+    const JointLimitOptions options{.buffers = {}, .gain = 2.0, .ramp = shape};
+    JointLimits limits(robot, options);
+    const auto reach = [&](double dt) {
+      double furthest = -INFINITY;
+      Vector q = Vector::Zero(8);
+      for (int i = 0; i <= 2000; ++i) {
+        q[kJoint] = upper - options.buffer * i / 1000.0;
+        limits.update(q);
+        const double xi = limits.activation()[kJoint];
+        const double v = (1.0 - xi) * v_max + xi * limits.target()[kJoint];
+        furthest = std::max(furthest, q[kJoint] + dt * v - upper);
+      }
+      return furthest;
+    };
+    const double longest = options.buffer / (ramp_slope_factor(shape) * v_max);
+    BOOST_TEST(reach(longest) <= 0.0);
+    BOOST_TEST(reach(1.3 * longest) > 0.0);  // the inequality is no mere formality
+  }
+}
+
+BOOST_AUTO_TEST_CASE(bounds_keep_a_joint_inside_at_the_longest_period) {
+  Robot robot = youbot();
+  const double upper = robot.position_upper()[kJoint];
+  const JointLimitOptions options{.buffers = {}, .gain = 10.0};
+  JointLimits limits(robot, options);
+  Vector q = Vector::Zero(8);
+  for (int i = 0; i <= 2000; ++i) {
+    q[kJoint] = upper - 0.4 * i / 2000.0;
+    limits.update(q);
+    BOOST_TEST(q[kJoint] + limits.motion_upper()[kJoint] / options.gain <= upper);
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+}  // namespace tope::test

@@ -1,0 +1,239 @@
+// Robot: names, units, bounds, locked and continuous joints, and every way a URDF, a robot's YAML file or a bound is
+// refused. RobotTerms: placements and Jacobians against finite differences.
+#include "support/robots.hpp"
+#include "support/text.hpp"
+
+#include <tope/robot/robot_terms.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace tope::test {
+namespace {
+
+const std::string box_inertia =
+    R"(<inertial><mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial>)";
+
+std::string link(const std::string& name) {
+  return "<link name=\"" + name + "\">" + box_inertia + "</link>\n";
+}
+
+/// A chain of three links with a revolute joint `a` and a joint `b` of this type and content.
+std::string urdf_with_joint(const std::string& type, const std::string& content) {
+  return "<robot name=\"chain\">\n" + link("l0") + link("l1") + link("l2") +
+         R"(<joint name="a" type="revolute"><parent link="l0"/><child link="l1"/><axis xyz="0 0 1"/>
+            <limit lower="-1" upper="2" velocity="3" effort="4"/></joint>
+            <joint name="b" type=")" +
+         type + R"("><parent link="l1"/><child link="l2"/><origin xyz="0.5 0 0"/><axis xyz="0 0 1"/>)" +
+         content + "</joint>\n</robot>\n";
+}
+
+const std::string b_limit = R"(<limit lower="-0.5" upper="0.5" velocity="1" effort="2"/>)";
+
+void check_urdf_error(const std::string& text, std::initializer_list<std::string> parts) {
+  const TemporaryFile file("robot.urdf", text);
+  check_error([&] { Robot::from_urdf(file.path()); }, parts);
+}
+
+void check_config_error(const std::string& text, std::initializer_list<std::string> parts) {
+  const TemporaryFile file("robot.yaml", text);
+  check_error([&] { Robot::from_urdf(source_path("robots/youbot/youbot.urdf"), file.path()); }, parts);
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(robot)
+
+BOOST_AUTO_TEST_CASE(youbot_has_its_joints_and_bounds) {
+  const Robot robot = youbot();
+  const std::vector<std::string> names{"base_x",      "base_y",      "base_yaw",    "arm_joint_1",
+                                       "arm_joint_2", "arm_joint_3", "arm_joint_4", "arm_joint_5"};
+  BOOST_TEST(robot.joint_names() == names, boost::test_tools::per_element());
+  BOOST_TEST(robot.nq() == 8);
+  BOOST_TEST(robot.nv() == 8);
+  BOOST_TEST(robot.joint_unit(0) == "m");
+  BOOST_TEST(robot.joint_unit(2) == "rad");
+  BOOST_TEST(robot.joint_unit(7) == "rad");
+  BOOST_TEST(robot.position_lower()[4] == -1.117011);
+  BOOST_TEST(robot.position_upper()[4] == 1.553343);
+  BOOST_TEST(robot.velocity_limit()[0] == 0.8);
+  BOOST_TEST(robot.effort_limit()[7] == 1.755);
+  BOOST_TEST(robot.joint_index("arm_joint_5") == 7);
+  BOOST_TEST(robot.base().has_value());
+  BOOST_TEST(robot.base()->options().joints[2] == 2);
+}
+
+BOOST_AUTO_TEST_CASE(continuous_joint_is_one_coordinate_without_limits) {
+  const Robot robot = youbot();
+  const int yaw = robot.joint_index("base_yaw");
+  BOOST_TEST(robot.position_lower()[yaw] == -INFINITY);
+  BOOST_TEST(robot.position_upper()[yaw] == INFINITY);
+  BOOST_TEST(robot.velocity_limit()[yaw] == 2.077922);
+  // past a full turn it is the same place
+  RobotTerms terms(robot);
+  Vector q = Vector::Constant(8, 0.3);
+  terms.update(q, Vector::Zero(8));
+  const Vector3 before = terms.frame_position(robot.frame_index("ee"));
+  q[yaw] += 4.0 * std::acos(-1.0);
+  terms.update(q, Vector::Zero(8));
+  BOOST_TEST((terms.frame_position(robot.frame_index("ee")) - before).norm() <= 1e-13);
+}
+
+BOOST_AUTO_TEST_CASE(continuous_joint_without_a_limit_element_has_no_bounds) {
+  const TemporaryFile file("robot.urdf", urdf_with_joint("continuous", ""));
+  const Robot robot = Robot::from_urdf(file.path());
+  BOOST_TEST(robot.nq() == 2);
+  BOOST_TEST(robot.position_upper()[1] == INFINITY);
+  BOOST_TEST(robot.velocity_limit()[1] == INFINITY);
+  BOOST_TEST(robot.effort_limit()[1] == INFINITY);
+}
+
+BOOST_AUTO_TEST_CASE(locked_joints_leave_the_model_where_they_are_locked) {
+  const TemporaryFile file("robot.urdf", urdf_with_joint("revolute", b_limit));
+  const Robot free = Robot::from_urdf(file.path());
+  RobotConfig config;
+  config.locked_joints["a"] = 0.7;
+  const Robot locked = Robot::from_urdf(file.path(), config);
+  BOOST_TEST(locked.joint_names() == std::vector<std::string>{"b"}, boost::test_tools::per_element());
+  BOOST_TEST(locked.position_upper()[0] == 0.5);
+  RobotTerms free_terms(free);
+  RobotTerms locked_terms(locked);
+  free_terms.update((Vector(2) << 0.7, 0.2).finished(), Vector::Zero(2));
+  locked_terms.update(Vector::Constant(1, 0.2), Vector::Zero(1));
+  BOOST_TEST((free_terms.frame_position(free.frame_index("l2")) -
+              locked_terms.frame_position(locked.frame_index("l2")))
+                 .norm() <= 1e-14);
+}
+
+BOOST_AUTO_TEST_CASE(bounds_can_be_set_and_belong_to_the_copy) {
+  const Robot original = youbot();
+  Robot robot = original;
+  Vector upper = robot.position_upper();
+  upper[0] = 0.35;
+  robot.set_position_limits(robot.position_lower(), upper);
+  robot.set_velocity_limit(Vector::Constant(8, 0.5));
+  BOOST_TEST(robot.position_upper()[0] == 0.35);
+  BOOST_TEST(robot.velocity_limit()[7] == 0.5);
+  BOOST_TEST(original.position_upper()[0] == 50.0);
+  BOOST_TEST(original.velocity_limit()[0] == 0.8);
+}
+
+BOOST_AUTO_TEST_CASE(bad_bounds_are_refused_and_change_nothing) {
+  Robot robot = youbot();
+  const Vector lower = robot.position_lower();
+  const Vector upper = robot.position_upper();
+  Vector crossed = upper;
+  crossed[4] = -2.0;
+  Vector nan = upper;
+  nan[3] = NAN;
+  check_error([&] { robot.set_position_limits(lower, crossed); }, {"arm_joint_2", "must be below upper"});
+  check_error([&] { robot.set_position_limits(lower, nan); }, {"arm_joint_1", "nan"});
+  check_error([&] { robot.set_position_limits(lower.head(3), upper); },
+              {"position_lower", "expected 8 values, got 3"});
+  check_error([&] { robot.set_position_limits(lower, upper.head(3)); },
+              {"position_upper", "expected 8 values, got 3"});
+  check_error([&] { robot.set_velocity_limit(Vector::Ones(9)); },
+              {"velocity_limit", "expected 8 values, got 9"});
+  check_error([&] { robot.set_velocity_limit(-Vector::Ones(8)); }, {"velocity_limit", "base_x", "positive"});
+  check_error([&] { robot.set_effort_limit(Vector::Constant(8, NAN)); },
+              {"effort_limit", "base_x", "positive"});
+  BOOST_TEST((robot.position_upper() - upper).head(2).norm() == 0.0);
+  BOOST_TEST(robot.velocity_limit()[0] == 0.8);
+}
+
+BOOST_AUTO_TEST_CASE(unknown_names_are_refused_with_the_nearest) {
+  const Robot robot = youbot();
+  check_error([&] { robot.joint_index("arm_jont_3"); },
+              {"unknown joint 'arm_jont_3'", "did you mean 'arm_joint_3'?"});
+  check_error([&] { robot.frame_index("arm_link5"); },
+              {"unknown frame 'arm_link5'", "did you mean 'arm_link_5'?"});
+  check_error([&] { robot.joint_index("elbow"); }, {"unknown joint 'elbow'", "known: base_x, base_y"});
+}
+
+BOOST_AUTO_TEST_CASE(missing_and_malformed_urdfs_are_refused) {
+  check_error([] { Robot::from_urdf("/no/such/robot.urdf"); }, {"/no/such/robot.urdf", "no such URDF file"});
+  check_error([] { Robot::from_urdf(source_path("robots")); }, {"robots", "no such URDF file"});
+  check_urdf_error("<robot name=\"broken\"><link", {"robot.urdf: malformed URDF"});
+  check_urdf_error("not xml at all", {"robot.urdf: malformed URDF"});
+  check_urdf_error("", {"robot.urdf: malformed URDF"});
+  check_urdf_error("<model/>", {"robot.urdf: malformed URDF", "robot"});
+  check_urdf_error(urdf_with_joint("revolute", ""), {"malformed URDF", "b"});
+  check_urdf_error("<robot name=\"rock\">" + link("l0") + "</robot>", {"no joint that moves"});
+}
+
+BOOST_AUTO_TEST_CASE(joints_of_other_kinds_are_refused) {
+  check_urdf_error(urdf_with_joint("floating", ""), {"robot.urdf: joint 'b'", "floating", "not supported"});
+  check_urdf_error(urdf_with_joint("planar", ""), {"joint 'b'", "planar", "not supported", "two prismatic"});
+  check_urdf_error(urdf_with_joint("revolute", b_limit + R"(<mimic joint="a" multiplier="2"/>)"),
+                   {"joint 'b'", "mimic", "not supported", "fixed"});
+  const TemporaryFile prismatic("robot.urdf", urdf_with_joint("prismatic", b_limit));
+  BOOST_TEST(Robot::from_urdf(prismatic.path()).joint_unit(1) == "m");
+  const TemporaryFile fixed("robot.urdf", urdf_with_joint("fixed", ""));
+  BOOST_TEST(Robot::from_urdf(fixed.path()).nq() == 1);
+}
+
+BOOST_AUTO_TEST_CASE(bad_robot_files_are_refused) {
+  const std::string good = read_text(source_path("robots/youbot/youbot.yaml"));
+  check_error([] { RobotConfig::from_yaml("/no/such/robot.yaml"); }, {"/no/such/robot.yaml", "no such file"});
+  check_config_error("a: [1", {"robot.yaml:", "not YAML"});
+  check_config_error("- 1\n", {"robot.yaml", "expected a map"});
+  check_config_error("name: x\nrotor_inertias: {}\n",
+                     {"robot.yaml:2: rotor_inertias: unknown key", "did you mean 'rotor_inertia'?"});
+  check_config_error(replaced(good, "half_track:", "half_trak:"), {"robot.yaml:", "mecanum_base.half_tra"});
+  check_config_error(replaced(good, "wheel_radius: 0.0475", "wheel_radius: -0.0475"),
+                     {"mecanum_base.wheel_radius: must be positive, got '-0.0475'"});
+  check_config_error(replaced(good, "wheel_radius: 0.0475", "wheel_radius: wide"),
+                     {"mecanum_base.wheel_radius: expected a number, got 'wide'"});
+  check_config_error(replaced(good, "x: base_x", "x: base_z"),
+                     {"robot.yaml", "mecanum_base", "unknown", "'base_z'"});
+  check_config_error("locked_joints: {gripper: 0.0}\n",
+                     {"robot.yaml", "locked_joints: unknown joint 'gripper'"});
+  check_config_error("rotor_inertia: {arm_joint_9: 0.1}\n",
+                     {"robot.yaml", "rotor_inertia", "'arm_joint_9'", "did you mean"});
+  check_config_error("rotor_inertia: {arm_joint_1: -0.1}\n",
+                     {"robot.yaml:1: rotor_inertia.arm_joint_1", "positive"});
+  check_config_error("effort_limit: {arm_joint_9: 1}\n", {"robot.yaml", "effort_limit", "'arm_joint_9'"});
+}
+
+BOOST_AUTO_TEST_CASE(configuration_replaces_effort_limits) {
+  const TemporaryFile file("robot.yaml", "effort_limit: {arm_joint_1: 5.5}\n");
+  const Robot robot = Robot::from_urdf(source_path("robots/youbot/youbot.urdf"), file.path());
+  BOOST_TEST(robot.effort_limit()[robot.joint_index("arm_joint_1")] == 5.5);
+  BOOST_TEST(robot.nq() == 10);  // the fingers are not locked here
+}
+
+BOOST_AUTO_TEST_CASE(frame_jacobians_are_derivatives) {
+  const Robot robot = youbot();
+  RobotTerms terms(robot);
+  const double h = 1e-6;
+  for (int seed = 0; seed < 20; ++seed) {
+    BOOST_TEST_CONTEXT("seed " << seed) {
+      Random random(seed);
+      const Vector q = random_position(random, robot, 0.0);
+      const Vector v = random.vector(8);
+      const int frame = robot.frame_index(seed % 2 == 0 ? "ee" : "arm_link_2");
+      terms.update(q + h * v, v);
+      const Vector3 ahead = terms.frame_position(frame);
+      const Matrix3 turned_ahead = terms.frame_rotation(frame);
+      terms.update(q - h * v, v);
+      const Vector3 velocity = (ahead - terms.frame_position(frame)) / (2.0 * h);
+      const Matrix3 spin =
+          (turned_ahead - terms.frame_rotation(frame)) / (2.0 * h) * terms.frame_rotation(frame).transpose();
+      terms.update(q, v);
+      Matrix jacobian(6, 8);
+      terms.frame_jacobian(frame, jacobian);
+      const Vector twist = jacobian * v;
+      BOOST_TEST((twist.head(3) - velocity).norm() <= 1e-8);
+      BOOST_TEST((twist.tail(3) - Vector3(spin(2, 1), spin(0, 2), spin(1, 0))).norm() <= 1e-5);
+      BOOST_TEST((terms.position() - q).norm() + (terms.velocity() - v).norm() == 0.0);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+}  // namespace tope::test

@@ -1,0 +1,224 @@
+// Every task's Jacobian and feedforward against central finite differences along random motions, with fixed and moving
+// targets; what tasks refuse. Not here: the rotation error itself (rotation_error_test).
+#include "support/robots.hpp"
+#include "support/text.hpp"
+
+#include <tope/task/damping.hpp>
+#include <tope/task/frame_orientation.hpp>
+#include <tope/task/frame_pose.hpp>
+#include <tope/task/frame_position.hpp>
+#include <tope/task/joint_position.hpp>
+#include <tope/task/posture.hpp>
+
+#include <Eigen/Geometry>
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace tope::test {
+namespace {
+
+constexpr double kGain = 2.0;  // 1/s, of the default reference
+
+Vector error_at(Task& task, RobotTerms& terms, const Vector& q, double t) {
+  terms.update(q, Vector::Zero(q.size()));
+  task.update(terms, t);
+  return task.error();
+}
+
+/// Largest |J v - feedforward - de/dt| over random states and motions.
+double check_rates(const Robot& robot, Task& task, int seeds) {
+  RobotTerms terms(robot);
+  double largest = 0.0;
+  for (int seed = 0; seed < seeds; ++seed) {
+    BOOST_TEST_CONTEXT(task.type() << ", seed " << seed) {
+      Random random(seed);
+      const Vector q = random_position(random, robot, 0.0);
+      const Vector v = random.vector(robot.nv());
+      const double t = random.uniform(0.0, 3.0);
+      const double h = 1e-5;
+      const Vector ahead = error_at(task, terms, q + h * v, t + h);
+      const Vector behind = error_at(task, terms, q - h * v, t - h);
+      error_at(task, terms, q, t);
+      if (task.near_flip()) {
+        continue;  // the error may pass pi within the step
+      }
+      const Vector feedforward = task.rate() + kGain * task.error();
+      const Vector expected = (ahead - behind) / (2.0 * h);
+      const double error = (task.jacobian() * v - feedforward - expected).lpNorm<Eigen::Infinity>();
+      BOOST_TEST(error <= 1e-7);
+      largest = std::max(largest, error);
+    }
+  }
+  BOOST_TEST_MESSAGE(task.type() << ": largest deviation " << largest);
+  return largest;
+}
+
+Target<RotationTarget> spinning_target(Random& random) {
+  return spinning(random.rotation(), random.vector(3, 0.4));
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(task)
+
+BOOST_AUTO_TEST_CASE(frame_position_rates) {
+  const Robot robot = youbot();
+  Random random(1);
+  for (const char* frame : {"ee", "arm_link_3", "base_link"}) {
+    FramePosition fixed(robot, frame, Vector3(random.vector(3)));
+    check_rates(robot, fixed, 50);
+  }
+  FramePosition along_line(robot, "ee",
+                           moving_along_line(Vector3(random.vector(3)), Vector3(random.vector(3))));
+  check_rates(robot, along_line, 50);
+  FramePosition along_sine(robot, "ee",
+                           moving_along_sine(Vector3(random.vector(3)), Vector3(random.vector(3)), 0.5));
+  check_rates(robot, along_sine, 50);
+}
+
+BOOST_AUTO_TEST_CASE(frame_orientation_rates) {
+  const Robot robot = youbot();
+  Random random(2);
+  for (int i = 0; i < 5; ++i) {
+    FrameOrientation fixed(robot, "ee", random.rotation());
+    check_rates(robot, fixed, 50);
+    FrameOrientation moving(robot, "arm_link_4", spinning_target(random));
+    check_rates(robot, moving, 50);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(frame_pose_rates) {
+  const Robot robot = youbot();
+  Random random(3);
+  FramePose fixed(robot, "ee", Vector3(random.vector(3)), random.rotation());
+  check_rates(robot, fixed, 100);
+  FramePose moving(robot, "ee", moving_along_sine(Vector3(random.vector(3)), Vector3(random.vector(3)), 0.3),
+                   spinning_target(random));
+  check_rates(robot, moving, 100);
+}
+
+BOOST_AUTO_TEST_CASE(joint_task_rates) {
+  const Robot robot = youbot();
+  Random random(4);
+  Posture posture(robot, random.vector(robot.nq()));
+  check_rates(robot, posture, 50);
+  JointPosition joints(robot, {{"arm_joint_4", 0.2}, {"base_x", -1.0}, {"arm_joint_1", 0.5}});
+  check_rates(robot, joints, 50);
+}
+
+BOOST_AUTO_TEST_CASE(damping_asks_for_rest) {
+  const Robot robot = youbot();
+  RobotTerms terms(robot);
+  Damping damping(robot);
+  damping.update(terms, 0.0);
+  BOOST_TEST(damping.error().norm() == 0.0);
+  BOOST_TEST(damping.rate().norm() == 0.0);
+  BOOST_TEST((damping.jacobian() - Matrix::Identity(8, 8)).norm() == 0.0);
+  BOOST_TEST(!damping.is_goal());
+}
+
+BOOST_AUTO_TEST_CASE(pose_is_position_over_orientation) {
+  const Robot robot = youbot();
+  Random random(5);
+  const Vector3 point = random.vector(3);
+  const Matrix3 rotation = random.rotation();
+  FramePose pose(robot, "ee", point, rotation);
+  FramePosition position(robot, "ee", point);
+  FrameOrientation orientation(robot, "ee", rotation);
+  RobotTerms terms(robot);
+  const Vector q = random_position(random, robot, 0.0);
+  error_at(pose, terms, q, 0.0);
+  error_at(position, terms, q, 0.0);
+  error_at(orientation, terms, q, 0.0);
+  BOOST_TEST((pose.error().head(3) - position.error()).norm() == 0.0);
+  BOOST_TEST((pose.error().tail(3) - orientation.error()).norm() == 0.0);
+  BOOST_TEST((pose.jacobian().topRows(3) - position.jacobian()).norm() == 0.0);
+  BOOST_TEST((pose.jacobian().bottomRows(3) - orientation.jacobian()).norm() == 0.0);
+}
+
+BOOST_AUTO_TEST_CASE(orientation_warns_near_its_flip) {
+  const Robot robot = youbot();
+  Random random(6);
+  RobotTerms terms(robot);
+  const Vector q = random_position(random, robot, 0.0);
+  terms.update(q, Vector::Zero(robot.nv()));
+  const Matrix3 now = terms.frame_rotation(robot.frame_index("ee"));
+  for (const double distance : {0.001, 0.049, 0.051, 1.0}) {
+    const Eigen::AngleAxisd turn(std::numbers::pi - distance, random.unit());
+    FrameOrientation orientation(robot, "ee", Matrix3(now * turn.toRotationMatrix().transpose()));
+    orientation.update(terms, 0.0);
+    BOOST_TEST(orientation.near_flip() == (distance < 0.05));
+    BOOST_TEST(orientation.error().norm() == std::numbers::pi - distance, boost::test_tools::tolerance(1e-9));
+    FramePose pose(robot, "ee", Vector3::Zero(), Matrix3(now * turn.toRotationMatrix().transpose()));
+    pose.update(terms, 0.0);
+    BOOST_TEST(pose.near_flip() == (distance < 0.05));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(reference_starts_with_the_first_update) {
+  const Robot robot = youbot();
+  RobotTerms terms(robot);
+  FramePosition task(robot, "ee", Vector3(0.5, 0.5, 0.5), PredefinedTime(2.0));
+  task.update(terms, 10.0);
+  BOOST_TEST(task.rate().norm() <= 1e-12);  // begins from rest, at 10 s
+  task.update(terms, 11.0);
+  const Vector halfway = task.rate();
+  BOOST_TEST(halfway.norm() > 0.1);
+  task.restart();
+  task.update(terms, 11.0);
+  BOOST_TEST(task.rate().norm() <= 1e-12);
+  BOOST_TEST(*task.duration() == 2.0);
+}
+
+BOOST_AUTO_TEST_CASE(clones_are_equal_and_apart) {
+  const Robot robot = youbot();
+  RobotTerms terms(robot);
+  FramePosition task(robot, "ee", Vector3(0.5, 0.5, 0.5), PredefinedTime(2.0));
+  task.update(terms, 0.0);
+  const auto copy = task.clone();
+  copy->update(terms, 1.0);
+  BOOST_TEST(task.rate().norm() <= 1e-12);
+  task.update(terms, 1.0);
+  BOOST_TEST((copy->rate() - task.rate()).norm() == 0.0);
+}
+
+BOOST_AUTO_TEST_CASE(units_are_told) {
+  const Robot robot = youbot();
+  BOOST_TEST(JointPosition(robot, {{"base_x", 0.0}}).error_unit() == "m");
+  BOOST_TEST(JointPosition(robot, {{"arm_joint_1", 0.0}}).error_unit() == "rad");
+  BOOST_TEST(JointPosition(robot, {{"base_x", 0.0}, {"arm_joint_1", 0.0}}).error_unit() == "mixed");
+}
+
+BOOST_AUTO_TEST_CASE(bad_targets_are_refused) {
+  const Robot robot = youbot();
+  const Vector3 origin = Vector3::Zero();
+  const Matrix3 upright = Matrix3::Identity();
+  Matrix3 scaled = 1.01 * upright;
+  Matrix3 mirrored = upright;
+  mirrored(2, 2) = -1.0;
+  check_error([&] { FramePosition(robot, "eee", origin); }, {"unknown frame 'eee'", "did you mean 'ee'?"});
+  check_error([&] { FramePosition(robot, "ee", Vector3(0.0, NAN, 0.0)); },
+              {"FramePosition: target", "finite"});
+  check_error([&] { FrameOrientation(robot, "wrist", upright); }, {"unknown frame 'wrist'", "known:"});
+  check_error([&] { FrameOrientation(robot, "ee", scaled); },
+              {"FrameOrientation: target", "not a rotation", "1e-6"});
+  check_error([&] { FrameOrientation(robot, "ee", mirrored); }, {"not a rotation", "det R = -1"});
+  check_error([&] { FrameOrientation(robot, "ee", Matrix3::Constant(NAN)); }, {"not a rotation"});
+  check_error([&] { FramePose(robot, "ee", origin, scaled); }, {"FramePose: rotation", "not a rotation"});
+  check_error([&] { FramePose(robot, "ee", Vector3(INFINITY, 0.0, 0.0), upright); },
+              {"FramePose: position", "finite"});
+  check_error([&] { Posture(robot, Vector::Zero(7)); }, {"Posture: target", "expected 8 values, got 7"});
+  check_error([&] { Posture(robot, Vector::Constant(8, NAN)); }, {"Posture: target", "finite"});
+  check_error([&] { JointPosition(robot, {}); }, {"JointPosition", "names no joint"});
+  check_error([&] { JointPosition(robot, {{"arm_joint_6", 0.0}}); },
+              {"unknown joint 'arm_joint_6'", "did you mean"});
+  check_error([&] { JointPosition(robot, {{"base_x", 0.0}, {"base_x", 1.0}}); }, {"base_x", "named twice"});
+  check_error([&] { JointPosition(robot, {{"base_x", NAN}}); }, {"JointPosition: target", "finite"});
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+}  // namespace tope::test
