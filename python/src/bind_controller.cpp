@@ -143,6 +143,9 @@ void bind_controller(nb::module_& module) {
           [](Controller& controller, const Vector& q, const Vector& v, double t) {
             Vector u = Vector::Zero(controller.robot().nv());
             controller.update(q, v, t, u);
+            if (PyErr_Occurred() != nullptr) {  // a moving target raised
+              throw nb::python_error();
+            }
             return u;
           },
           "q"_a, "v"_a, "t"_a, "One cycle: the command (nv) at state q (nq), v (nv) and time t [s].")

@@ -14,7 +14,8 @@ using Bounds = nb::ndarray<nb::numpy, double, nb::ndim<1>>;
 
 /// A writable view, so that single entries can be set; a controller checks the bounds when it copies the robot.
 Bounds view(Robot& robot, const Vector& bounds) {
-  auto* data = const_cast<double*>(bounds.data());  // NOLINT(cppcoreguidelines-pro-type-const-cast): robot is not const
+  auto* data = const_cast<double*>(
+      bounds.data());  // NOLINT(cppcoreguidelines-pro-type-const-cast): robot is not const
   return {data, {static_cast<std::size_t>(bounds.size())}, nb::find(robot)};
 }
 

@@ -21,31 +21,68 @@ using namespace nb::literals;
 namespace tope::python {
 namespace {
 
+/// Anything that numpy makes an array of numbers from, a list for example.
+nb::object numbers_from(const nb::handle& values) {
+  return nb::module_::import_("numpy").attr("asarray")(values, "dtype"_a = "float64");
+}
+
+template <typename T>
+T numbers_from(const nb::handle& values, const char* expected) {
+  T result;
+  if (!nb::try_cast<T>(numbers_from(values), result)) {
+    throw ConfigError(std::string("target: expected ") + expected);
+  }
+  return result;
+}
+
 /// A 3 x 3 matrix, or a quaternion w, x, y, z.
 Matrix3 rotation_from(const nb::handle& target) {
-  Matrix matrix;
-  if (nb::try_cast<Matrix>(target, matrix) && matrix.rows() == 3 && matrix.cols() == 3) {
+  const nb::object numbers = numbers_from(target);
+  Matrix3 matrix;
+  if (nb::try_cast<Matrix3>(numbers, matrix)) {
     return matrix;
   }
-  Vector wxyz;
-  if (!nb::try_cast<Vector>(target, wxyz) || wxyz.size() != 4) {
-    throw ConfigError("target: expected a 3 x 3 rotation matrix or a quaternion (w, x, y, z)");
-  }
+  const auto wxyz =
+      numbers_from<Eigen::Vector4d>(numbers, "a 3 x 3 rotation matrix or a quaternion (w, x, y, z)");
   if (std::abs(wxyz.norm() - 1.0) > 1e-2) {
     throw ConfigError("target: not a rotation: the norm of the quaternion is " + std::to_string(wxyz.norm()));
   }
   return Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized().toRotationMatrix();
 }
 
+Vector3 point_at(const nb::handle& target) {
+  return numbers_from<Vector3>(target, "a point of three numbers [m]");
+}
+
+/// A target that a Python function moves. What it raises inside the control loop must not cross it: the target stands
+/// still, and Controller.update raises the error when the cycle is complete.
+template <typename Sample>
+Target<Sample> moving_target(std::function<Sample(double)> motion) {
+  const Sample first = motion(0.0);  // raises here what is wrong from the start
+  return Target<Sample>(std::function<Sample(double)>([motion, last = first](double t) mutable {
+    if (PyErr_Occurred() != nullptr) {
+      return last;
+    }
+    try {
+      last = motion(t);
+    } catch (nb::python_error& error) {
+      error.restore();
+    } catch (const std::exception& error) {
+      PyErr_SetString(PyExc_RuntimeError, error.what());
+    }
+    return last;
+  }));
+}
+
 /// A point, or a function of time that returns a point and its velocity.
 Target<PointTarget> point_from(const nb::object& target) {
   if (PyCallable_Check(target.ptr()) == 0) {
-    return PointTarget{.position = nb::cast<Vector3>(target)};
+    return PointTarget{.position = point_at(target)};
   }
-  return Target<PointTarget>(std::function<PointTarget(double)>([target](double t) {
-    const auto [position, velocity] = nb::cast<std::pair<Vector3, Vector3>>(target(t));
-    return PointTarget{.position = position, .velocity = velocity};
-  }));
+  return moving_target<PointTarget>([target](double t) {
+    const nb::tuple sample = nb::cast<nb::tuple>(target(t));
+    return PointTarget{.position = point_at(sample[0]), .velocity = point_at(sample[1])};
+  });
 }
 
 /// A rotation, or a function of time that returns a rotation and its angular velocity.
@@ -53,11 +90,10 @@ Target<RotationTarget> rotating_from(const nb::object& target) {
   if (PyCallable_Check(target.ptr()) == 0) {
     return RotationTarget{.rotation = rotation_from(target)};
   }
-  return Target<RotationTarget>(std::function<RotationTarget(double)>([target](double t) {
+  return moving_target<RotationTarget>([target](double t) {
     const nb::tuple sample = nb::cast<nb::tuple>(target(t));
-    return RotationTarget{.rotation = rotation_from(sample[0]),
-                          .angular_velocity = nb::cast<Vector3>(sample[1])};
-  }));
+    return RotationTarget{.rotation = rotation_from(sample[0]), .angular_velocity = point_at(sample[1])};
+  });
 }
 
 void bind_references(nb::module_& module) {
@@ -115,9 +151,10 @@ void bind_tasks(nb::module_& module) {
       "Position and orientation of a frame as one task of six rows.");
   module.def(
       "Posture",
-      [](const Vector& target, const Reference& reference) {
-        return TaskSpec{"posture", [=](const Robot& robot) {
-                          return std::make_unique<Posture>(robot, target, reference);
+      [](const nb::object& target, const Reference& reference) {
+        return TaskSpec{"posture", [=, posture = numbers_from<Vector>(target, "a list of joint positions")](
+                                       const Robot& robot) {
+                          return std::make_unique<Posture>(robot, posture, reference);
                         }};
       },
       nb::kw_only(), "target"_a, "reference"_a = Exponential{}, "Draws all joints towards a posture (nq).");

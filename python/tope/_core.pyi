@@ -91,7 +91,7 @@ def FrameOrientation(*, frame: str, target: object, reference: Exponential | Pre
 def FramePose(*, frame: str, position: object, rotation: object, reference: Exponential | PredefinedTime = ...) -> Task:
     """Position and orientation of a frame as one task of six rows."""
 
-def Posture(*, target: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], reference: Exponential | PredefinedTime = ...) -> Task:
+def Posture(*, target: object, reference: Exponential | PredefinedTime = ...) -> Task:
     """Draws all joints towards a posture (nq)."""
 
 def JointPosition(*, target: Mapping[str, float], reference: Exponential | PredefinedTime = ...) -> Task:

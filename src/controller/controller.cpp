@@ -41,6 +41,11 @@ void require_conditions(const std::vector<Condition>& conditions) {
   }
 }
 
+/// The methods that keep limits by rows with activations.
+bool uses_limit_rows(LimitMethod method) {
+  return method != LimitMethod::unilateral && method != LimitMethod::none;
+}
+
 double require_period(double dt) {
   if (!std::isfinite(dt) || dt <= 0.0) {
     throw ConfigError("dt: must be positive and finite [s], got " + std::to_string(dt));
@@ -60,6 +65,8 @@ Controller::Controller(const Robot& robot, const ControllerOptions& options)
       solution_(robot_.nv()),
       command_(Vector::Zero(robot_.nv())),
       limit_command_(Vector::Zero(robot_.nv())),
+      command_lower_(-robot_.velocity_limit()),
+      command_upper_(robot_.velocity_limit()),
       upper_activation_(Vector::Zero(robot_.nv())),
       lower_activation_(Vector::Zero(robot_.nv())) {
   require_period(options_.dt);
@@ -240,7 +247,10 @@ void Controller::fill_field() {
 void Controller::bound(Eigen::Ref<Vector> u) {
   whitening_.command(solution_.y_limits, limit_command_);
   whitening_.command(solution_.y, command_);
-  const CommandBounds bounds = CommandBounds::apply(limits_.velocity_limit(), limit_command_, command_);
+  if (uses_limit_rows(options_.limits.method)) {
+    limits_.blended_speed_bounds(stack_.limit_activation, command_lower_, command_upper_);
+  }
+  const CommandBounds bounds = CommandBounds::apply(command_lower_, command_upper_, limit_command_, command_);
   u = command_;
   status_.scale = bounds.scale;
   status_.bound_joint = bounds.clipped >= 0 ? bounds.clipped : bounds.most_binding;

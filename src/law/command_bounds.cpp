@@ -1,22 +1,28 @@
 #include <tope/law/command_bounds.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace tope {
+namespace {
 
-CommandBounds CommandBounds::apply(const Vector& bound, Vector& first, Vector& command) {
+// A share this far beyond its room is rounding, and must not stop the robot. [units of the command]
+constexpr double kRounding = 1e-9;
+
+}  // namespace
+
+CommandBounds CommandBounds::apply(const Vector& lower, const Vector& upper, Vector& first, Vector& command) {
   CommandBounds result;
   command -= first;  // the tasks' share
-  for (Eigen::Index j = 0; j < bound.size(); ++j) {
-    if (std::abs(first[j]) > bound[j]) {
-      first[j] = std::copysign(bound[j], first[j]);
+  for (Eigen::Index j = 0; j < lower.size(); ++j) {
+    if (first[j] > upper[j] + kRounding || first[j] < lower[j] - kRounding) {
+      first[j] = std::clamp(first[j], lower[j], upper[j]);
       result.clipped = static_cast<int>(j);
     }
-    const double share = std::abs(command[j]);
-    const double room = command[j] > 0.0 ? bound[j] - first[j] : bound[j] + first[j];
-    if (share > 0.0 && room < result.scale * share) {
-      result.scale = room / share;
+    const double share = command[j];
+    const double room = std::max(0.0, share > 0.0 ? upper[j] - first[j] : first[j] - lower[j]);
+    const double size = share > 0.0 ? share : -share;
+    if (size > room + kRounding && room < result.scale * size) {
+      result.scale = room / size;
       result.most_binding = static_cast<int>(j);
     }
   }

@@ -121,7 +121,8 @@ void Hierarchy::add_damped_level(bool last, Solution& solution) {
   auto projected = projected_.topRows(m);
   auto weights = weights_.head(m);
   const SymmetricEigen::Solver& eigen = eigen_.compute(gram_.topLeftCorner(m, m));
-  solution.singular = true;
+  // a level that asks for all the freedom there is always loses some to the levels above it
+  solution.singular = solution.singular || m < null_space_.rows();
 
   weights.noalias() = eigen.eigenvectors().transpose() * residual_.head(m);
   for (Eigen::Index i = 0; i < m; ++i) {

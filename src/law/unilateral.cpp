@@ -10,6 +10,8 @@
 namespace tope {
 namespace {
 
+using InPlaceCholesky = Eigen::LLT<Eigen::Ref<Matrix>>;
+
 int workspace_rows(const Stack& stack) { return std::max(1, stack.max_level_rows()); }
 
 }  // namespace
@@ -23,6 +25,7 @@ Unilateral::Unilateral(const Stack& stack, const Options& options)
       task_(workspace_rows(stack), stack.size()),
       task_gram_(workspace_rows(stack), workspace_rows(stack)),
       factor_(workspace_rows(stack), workspace_rows(stack)),
+      turned_task_(workspace_rows(stack), stack.size()),
       open_task_(stack.size(), workspace_rows(stack)),
       motion_(stack.size(), stack.size()),
       residual_(workspace_rows(stack)),
@@ -74,8 +77,16 @@ void Unilateral::solve(const Stack& stack, const Selection& selection, Solution&
                       motion_, lower_, upper_);
     solution.cut_off = solution.cut_off || !solved;
     solution.y.noalias() += open_ * solver_.z();
-    if (i < stack.tasks.size()) {
-      lock_level();
+    const bool last = i == stack.tasks.size();
+    if (m < stack.size() || !last) {
+      const bool clear = all_directions_clear();
+      // a level that asks for all the freedom there is always loses some to the levels above it
+      solution.singular = solution.singular || (!clear && m < stack.size());
+      if (!last && clear) {
+        lock_fully();
+      } else if (!last) {
+        lock_gradually();
+      }
     }
   }
 }
@@ -95,28 +106,38 @@ void Unilateral::set_bounds(const Stack& stack, int level, const Vector& y) {
   upper_ = (stack.motion_upper - motion_at_y_).array() - headroom;
 }
 
-/// Closes the directions that the level holds: fully where sigma >= lock, gradually below.
-void Unilateral::lock_level() {
+/// Computes A M M^T A^T; true when every sigma exceeds the lock.
+bool Unilateral::all_directions_clear() {
   const int m = rows_.rows();
-  auto task = task_.topRows(m);
   auto gram = task_gram_.topLeftCorner(m, m);
   auto factor = factor_.topLeftCorner(m, m);
-  auto open_task = open_task_.leftCols(m);
-  gram.noalias() = task * task.transpose();
+  gram.noalias() = task_.topRows(m) * task_.topRows(m).transpose();
   factor = gram;
   factor.diagonal().array() -= options_.lock * options_.lock;
-  using InPlaceCholesky = Eigen::LLT<Eigen::Ref<Matrix>>;
-  if (InPlaceCholesky(factor).info() == Eigen::Success) {  // every sigma > lock: an exact projector
-    factor = gram;
-    const InPlaceCholesky cholesky(factor);
-    cholesky.matrixL().solveInPlace(task);
-    open_task.noalias() = open_ * task.transpose();
-    open_.noalias() -= open_task * task;
-    return;
-  }
-  const SymmetricEigen::Solver& eigen = eigen_.compute(gram);
-  motion_.topRows(m).noalias() = eigen.eigenvectors().transpose() * task;
-  task = motion_.topRows(m);  // rows sigma v^T
+  return InPlaceCholesky(factor).info() == Eigen::Success;
+}
+
+/// Takes all directions of the level out of M: an exact projector.
+void Unilateral::lock_fully() {
+  const int m = rows_.rows();
+  auto task = task_.topRows(m);
+  auto open_task = open_task_.leftCols(m);
+  auto factor = factor_.topLeftCorner(m, m);
+  factor = task_gram_.topLeftCorner(m, m);
+  const InPlaceCholesky cholesky(factor);
+  cholesky.matrixL().solveInPlace(task);
+  open_task.noalias() = open_ * task.transpose();
+  open_.noalias() -= open_task * task;
+}
+
+/// Takes each direction out of M as far as its sigma says.
+void Unilateral::lock_gradually() {
+  const int m = rows_.rows();
+  auto task = task_.topRows(m);
+  auto open_task = open_task_.leftCols(m);
+  const SymmetricEigen::Solver& eigen = eigen_.compute(task_gram_.topLeftCorner(m, m));
+  turned_task_.topRows(m).noalias() = eigen.eigenvectors().transpose() * task;
+  task = turned_task_.topRows(m);  // rows sigma v^T
   open_task.noalias() = open_ * task.transpose();
   for (Eigen::Index i = 0; i < m; ++i) {
     // (1 - sqrt(1 - s(x))) / sigma^2 with x = sigma / lock, written so that it stays finite at sigma = 0

@@ -70,6 +70,15 @@ void JointLimits::update(const VectorArg& q) {
   }
 }
 
+void JointLimits::blended_speed_bounds(const Vector& activation, Vector& lower, Vector& upper) const {
+  lower = -velocity_limit_;
+  upper = velocity_limit_;
+  for (int j = 0; j < size(); ++j) {
+    Vector& near = side_[j] > 0.0 ? upper : lower;
+    near[j] += activation[j] * (target_[j] - near[j]);
+  }
+}
+
 void JointLimits::engagement(const Vector& v, Eigen::Ref<Vector> upper, Eigen::Ref<Vector> lower) const {
   for (int j = 0; j < size(); ++j) {
     const double scale = options_.gain * buffer_[j];

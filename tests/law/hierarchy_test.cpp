@@ -53,11 +53,12 @@ int on_regular_stacks(int seeds, Check check) {
   return checked;
 }
 
-/// One unknown, one row: A = a, b = 1.
-Stack scalar_stack(double a, int level = 1) {
-  Stack stack(1);
-  stack.tasks.push_back(
-      {.level = level, .activation = 1.0, .a = Matrix::Constant(1, 1, a), .b = Vector::Constant(1, 1.0)});
+/// Two unknowns, one row: A = (a, 0), b = 1.
+Stack one_row_stack(double a, int level = 1) {
+  Stack stack(2);
+  Matrix row = Matrix::Zero(1, 2);
+  row(0, 0) = a;
+  stack.tasks.push_back({.level = level, .activation = 1.0, .a = row, .b = Vector::Ones(1)});
   return stack;
 }
 
@@ -128,15 +129,15 @@ BOOST_AUTO_TEST_CASE(splits_the_limits_part_off) {
 }
 
 BOOST_AUTO_TEST_CASE(damps_by_its_formula) {
-  // one row a, one unknown: rho = a^2 / (a^2 + eps^2)
+  // one row (a, 0): rho = a^2 / (a^2 + eps^2)
   const double epsilon = defaults.epsilon;
   const double rho_0 = defaults.damped_below;
   for (const double rho : {1e-6, 0.01, 0.03, 0.0499, 0.0501, 0.3}) {
     const double a = epsilon * std::sqrt(rho / (1.0 - rho));
     const double gain = rho / (rho + rho_0 * std::pow(std::max(0.0, 1.0 - rho / rho_0), 2));
-    const Stack stack = scalar_stack(a);
+    const Stack stack = one_row_stack(a);
     Hierarchy law(stack, defaults);
-    Solution solution(1);
+    Solution solution(2);
     law.solve(stack, select_complete(stack), solution);
     BOOST_TEST(a * solution.y[0] == gain, boost::test_tools::tolerance(1e-9));
     BOOST_TEST(solution.singular == (rho < rho_0));
@@ -148,15 +149,15 @@ BOOST_AUTO_TEST_CASE(hands_a_lost_direction_down_by_its_formula) {
   for (const double rho : {0.002, 0.01, 0.019, 0.021}) {
     const double epsilon = defaults.epsilon;
     const double a = epsilon * std::sqrt(rho / (1.0 - rho));
-    Stack stack = scalar_stack(a);
+    Stack stack = one_row_stack(a);
     stack.tasks[0].b[0] = 0.0;
-    const double open = 1.0 - std::min(1.0, std::pow(rho / defaults.locked_above, 2) *
-                                                (3.0 - 2.0 * rho / defaults.locked_above));
-    stack.tasks.push_back(scalar_stack(1.0, 2).tasks[0]);
+    const double x = std::min(1.0, rho / defaults.locked_above);
+    const double open = 1.0 - x * x * (3.0 - 2.0 * x);
+    stack.tasks.push_back(one_row_stack(1.0, 2).tasks[0]);
     const double share = open / (1.0 + epsilon * epsilon);
     const double deficit = std::max(0.0, 1.0 - share / defaults.damped_below);
     const double expected = share / (share + defaults.damped_below * deficit * deficit);
-    BOOST_TEST(solve(stack, select_complete(stack))[0] - expected == 0.0, boost::test_tools::tolerance(1e-9));
+    BOOST_TEST(std::abs(solve(stack, select_complete(stack))[0] - expected) <= 1e-9);
   }
 }
 

@@ -14,6 +14,16 @@
 #include <vector>
 
 namespace tope::test {
+namespace {
+
+/// The same pointer, but the compiler cannot know, and must not leave the allocation out.
+template <typename T>
+T* kept(T* memory) {
+  asm volatile("" : "+r"(memory) : : "memory");
+  return memory;
+}
+
+}  // namespace
 
 BOOST_AUTO_TEST_SUITE(law_no_allocation)
 
@@ -24,16 +34,16 @@ BOOST_AUTO_TEST_CASE(guard_sees_every_way_to_the_heap) {
     return heap_calls() - before;
   };
   BOOST_TEST(counted([] {}) == 0);
-  BOOST_TEST(counted([] { const auto one = std::make_unique<double>(1.0); }) == 2);
+  BOOST_TEST(counted([] { delete kept(new double(1.0)); }) == 2);
   BOOST_TEST(counted([] { const Vector v = Vector::Zero(100); }) == 2);
-  BOOST_TEST(counted([] { std::free(std::realloc(std::calloc(1, 10), 100000)); }) == 3);
-  BOOST_TEST(counted([] { std::free(std::aligned_alloc(64, 128)); }) == 2);
+  BOOST_TEST(counted([] { std::free(kept(std::realloc(kept(std::calloc(1, 10)), 100000))); }) == 3);
+  BOOST_TEST(counted([] { std::free(kept(std::aligned_alloc(64, 128))); }) == 2);
   BOOST_TEST(counted([] {
                void* memory = nullptr;
-               BOOST_REQUIRE(posix_memalign(&memory, 64, 128) == 0);
-               std::free(memory);
-             }) >= 2);
-  BOOST_TEST(counted([] { const std::string text = std::to_string(1.0) + std::string(100, 'x'); }) >= 2);
+               if (posix_memalign(&memory, 64, 128) == 0) {
+                 std::free(kept(memory));
+               }
+             }) == 2);
   BOOST_TEST(counted([] { std::free(realpath("/", nullptr)); }) >= 2);  // from inside a shared library
 }
 

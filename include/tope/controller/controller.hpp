@@ -98,6 +98,8 @@ class Controller {
   Solution solution_;
   Vector command_;
   Vector limit_command_;
+  Vector command_lower_;
+  Vector command_upper_;
   Vector upper_activation_;
   Vector lower_activation_;
   Status status_;

@@ -9,9 +9,30 @@
 namespace tope {
 
 /// Eigen-decompositions of symmetric matrices of any size up to a bound, each with its memory reserved.
+/// (Eigen's own compute() takes its workspace from the heap.)
 class SymmetricEigen {
  public:
-  using Solver = Eigen::SelfAdjointEigenSolver<Matrix>;
+  /// One size's memory and result: M = V diag(values) V^T, values in ascending order.
+  class Solver {
+   public:
+    explicit Solver(Eigen::Index size);
+
+    void compute(const Eigen::Ref<const Matrix>& matrix);
+
+    const Vector& eigenvalues() const { return values_; }
+    const Matrix& eigenvectors() const { return vectors_; }  ///< one a column
+
+   private:
+    Matrix reduced_;  // M, then its tridiagonal form T: M = Q T Q^T
+    Matrix basis_;    // Q
+    Vector reflector_;
+    Vector diagonal_;
+    Vector subdiagonal_;
+    Vector workspace_;
+    Eigen::SelfAdjointEigenSolver<Matrix> tridiagonal_;
+    Vector values_;
+    Matrix vectors_;
+  };
 
   explicit SymmetricEigen(int max_size);
 

@@ -41,7 +41,9 @@ class Unilateral final : public StackLaw {
  private:
   double squared_damping(double squared_residual) const;
   void set_bounds(const Stack& stack, int level, const Vector& y);
-  void lock_level();
+  bool all_directions_clear();
+  void lock_fully();
+  void lock_gradually();
 
   Options options_;
   LevelRows rows_;
@@ -51,6 +53,7 @@ class Unilateral final : public StackLaw {
   Matrix task_;         // A M (m x n)
   Matrix task_gram_;    // A M M^T A^T (m x m)
   Matrix factor_;       // (m x m)
+  Matrix turned_task_;  // rows of A M along its singular vectors (m x n)
   Matrix open_task_;    // M M^T A^T, column-weighted (n x m)
   Matrix motion_;       // T M (n x n)
   Vector residual_;     // (m)

@@ -37,6 +37,11 @@ class JointLimits {
   const Vector& target() const { return target_; }          ///< motion the row asks for (n)
   const Vector& motion_lower() const { return motion_lower_; }
   const Vector& motion_upper() const { return motion_upper_; }
+  /// Speed bounds (n) of a command that blends limit rows: v_max away from the limits and, across the buffer,
+  /// (1 - xi) v_max + xi target towards the limit. What a blend adds from laws without the row must not exceed
+  /// (1 - xi) v_max: bounded by v_max alone it can carry the joint through its limit. `activation` (n) is xi, zero
+  /// for joints whose rows take no part.
+  void blended_speed_bounds(const Vector& activation, Vector& lower, Vector& upper) const;
   /// Joint furthest beyond a limit, or -1.
   int beyond() const { return beyond_; }
 

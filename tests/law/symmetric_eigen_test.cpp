@@ -1,0 +1,43 @@
+// SymmetricEigen against Eigen's own decomposition, for regular and deficient matrices and for clusters.
+#include "support/random.hpp"
+
+#include <tope/law/symmetric_eigen.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+namespace tope::test {
+namespace {
+
+void check(SymmetricEigen& eigen, const Matrix& matrix) {
+  const SymmetricEigen::Solver& result = eigen.compute(matrix);
+  const Matrix& vectors = result.eigenvectors();
+  const Vector& values = result.eigenvalues();
+  const double scale = 1e-13 * (1.0 + matrix.norm());
+  BOOST_TEST((vectors * values.asDiagonal() * vectors.transpose() - matrix).norm() <= scale);
+  BOOST_TEST((vectors.transpose() * vectors - Matrix::Identity(matrix.rows(), matrix.rows())).norm() <=
+             1e-13);
+  BOOST_TEST((values - Eigen::SelfAdjointEigenSolver<Matrix>(matrix).eigenvalues()).norm() <= scale);
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(symmetric_eigen)
+
+BOOST_AUTO_TEST_CASE(decomposes_any_size_up_to_its_bound) {
+  SymmetricEigen eigen(40);
+  for (int size = 1; size <= 40; ++size) {
+    BOOST_TEST_CONTEXT("seed and size " << size) {
+      Random random(size);
+      check(eigen, random.positive_definite(size, 0.1, 3.0));
+      const Matrix rows = random.matrix_of_rank(size, size + 3, (size + 1) / 2, 0.5, 2.0);
+      check(eigen, rows * rows.transpose());
+      check(eigen, Matrix::Identity(size, size));
+      check(eigen, Matrix::Zero(size, size));
+      check(eigen, Matrix::Ones(size, size));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+}  // namespace tope::test

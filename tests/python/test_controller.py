@@ -1,0 +1,172 @@
+"""The Python twin of the controller: names, conversions and errors, and the law against numpy.
+
+The laws themselves are tested in C++; here one cycle of the default law is compared with its definition.
+"""
+
+from pathlib import Path
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+import tope
+
+ROOT = Path(__file__).parents[2]
+URDF = ROOT / "robots/youbot/youbot.urdf"
+CONFIG = ROOT / "robots/youbot/youbot.yaml"
+Q0 = np.array([0.15, 0, 0, 0, 0.4, 0.9, 0.6, 1.8])
+
+
+@pytest.fixture
+def robot() -> tope.Robot:
+    return tope.Robot.from_urdf(URDF, CONFIG)
+
+
+def controller(robot: tope.Robot, **options: object) -> tope.Controller:
+    return tope.Controller(robot, mode="velocity", dt=1e-3, **options)
+
+
+def frame_terms(q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Position of ee and the Jacobian of its linear velocity, by Pinocchio's own Python."""
+    full = pin.buildModelFromUrdf(str(URDF))
+    fingers = [full.getJointId(f"gripper_finger_joint_{side}") for side in "lr"]
+    model = pin.buildReducedModel(full, fingers, pin.neutral(full))
+    data = model.createData()
+    configuration = np.concatenate([q[:2], [np.cos(q[2]), np.sin(q[2])], q[3:]])
+    pin.computeJointJacobians(model, data, configuration)
+    pin.updateFramePlacements(model, data)
+    ee = model.getFrameId("ee")
+    jacobian = pin.getFrameJacobian(model, data, ee, pin.LOCAL_WORLD_ALIGNED)
+    return data.oMf[ee].translation, jacobian[:3]
+
+
+def test_names(robot: tope.Robot) -> None:
+    assert (robot.nq, robot.nv) == (8, 8)
+    assert robot.joint_names[0] == "base_x"
+    assert robot.position_upper.shape == robot.effort_limit.shape == (8,)
+    assert np.isinf(robot.position_upper[2])
+
+
+def test_bounds_are_settable_whole_and_by_entry(robot: tope.Robot) -> None:
+    robot.position_upper[0] = 0.35
+    assert robot.position_upper[0] == 0.35
+    robot.velocity_limit = np.full(8, 0.5)
+    assert robot.velocity_limit[7] == 0.5
+    robot.position_upper[0] = -100.0
+    with pytest.raises(
+        tope.ConfigError, match=r"position limits of base_x: lower -50.*must be below upper -100"
+    ):
+        controller(robot)
+
+
+def test_one_task_is_the_damped_inverse(robot: tope.Robot) -> None:
+    target = np.array([0.7, 0.2, 0.3])
+    c = controller(robot)
+    c.add(tope.FramePosition(frame="ee", target=target, reference=tope.Exponential(gain=1.5)), level=1)
+    u = c.update(Q0, np.zeros(8), 0.0)
+    position, jacobian = frame_terms(Q0)
+    rate = -1.5 * (position - target)
+    squared = rate @ rate
+    damping = 0.02**2 + (0.05**2 - 0.02**2) * squared / (squared + 0.05**2)
+    expected = jacobian.T @ np.linalg.solve(jacobian @ jacobian.T + damping * np.eye(3), rate)
+    assert np.abs(u) == pytest.approx(np.abs(expected), abs=1e-9)
+    assert u == pytest.approx(expected, abs=1e-9)
+    assert c.status.ok
+
+
+def test_activations_name_limited_sides(robot: tope.Robot) -> None:
+    c = controller(robot, limits=tope.LimitOptions(method="chain", buffer=0.1))
+    c.add(tope.Damping(), level=1)
+    q = Q0.copy()
+    q[7] = robot.position_upper[7] - 0.05
+    c.update(q, np.zeros(8), 0.0)
+    assert c.activations["arm_joint_5.upper"] == pytest.approx(0.5)
+    assert c.activations["arm_joint_5.lower"] == 0.0
+    assert "base_yaw.upper" not in c.activations
+    assert c.status.events == ["limit"]
+
+
+def test_joint_weights_choose_who_moves(robot: tope.Robot) -> None:
+    def base_speed(weights: list[float]) -> float:
+        c = controller(robot, joint_weights=weights)
+        c.add(tope.FramePosition(frame="ee", target=[0.7, 0.2, 0.3]), level=1)
+        return float(np.linalg.norm(c.update(Q0, np.zeros(8), 0.0)[:3]))
+
+    assert base_speed([100.0] * 3 + [1.0] * 5) < 0.2 * base_speed([])
+
+
+def test_task_leaves_over_time(robot: tope.Robot) -> None:
+    c = controller(robot)
+    handle = c.add(tope.FramePosition(frame="ee", target=[0.7, 0.2, 0.3]), level=1)
+    full = c.update(Q0, np.zeros(8), 0.0)
+    c.remove(handle, over=0.5)
+    assert c.update(Q0, np.zeros(8), 1.0) == pytest.approx(full)
+    assert c.update(Q0, np.zeros(8), 1.25) == pytest.approx(0.5 * full)
+    assert c.update(Q0, np.zeros(8), 1.5) == pytest.approx(np.zeros(8))
+
+
+def test_moving_target_is_led_by_its_velocity(robot: tope.Robot) -> None:
+    position, jacobian = frame_terms(Q0)
+    velocity = np.array([0.1, 0.0, -0.05])
+    c = controller(robot, limits=tope.LimitOptions(method="none"))
+    c.add(tope.FramePosition(frame="ee", target=lambda t: (position + t * velocity, velocity)), level=1)
+    assert jacobian @ c.update(Q0, np.zeros(8), 0.0) == pytest.approx(velocity, abs=1e-12)
+
+
+def test_error_in_a_moving_target_is_raised_after_the_cycle(robot: tope.Robot) -> None:
+    def target(t: float) -> tuple[list[float], list[float]]:
+        if t > 0:
+            raise ValueError("no such place")
+        return [0.7, 0.2, 0.3], [0.0, 0.0, 0.0]
+
+    c = controller(robot)
+    c.add(tope.FramePosition(frame="ee", target=target), level=1)
+    c.update(Q0, np.zeros(8), 0.0)
+    with pytest.raises(ValueError, match="no such place"):
+        c.update(Q0, np.zeros(8), 1.0)
+
+
+def test_bad_state_commands_no_motion(robot: tope.Robot) -> None:
+    c = controller(robot)
+    c.add(tope.FramePosition(frame="ee", target=[0.7, 0.2, 0.3]), level=1)
+    assert not c.update(np.full(8, np.nan), np.zeros(8), 0.0).any()
+    assert c.status.events == ["bad_input"]
+    assert not c.update(np.zeros(7), np.zeros(8), 0.0).any()
+    assert "wrong size" in c.status_text
+
+
+@pytest.mark.parametrize(
+    ("build", "message"),
+    [
+        (
+            lambda r: controller(r, limits=tope.LimitOptions(method="chian")),
+            "unknown limit method 'chian'; did you",
+        ),
+        (lambda r: tope.Controller(r, mode="torqe", dt=1e-3), "unknown mode 'torqe'"),
+        (
+            lambda r: controller(r, limits=tope.LimitOptions(gain=-1.0)),
+            "gain must be positive and finite, got -1",
+        ),
+        (lambda r: controller(r, joint_weights=[1.0]), "joint_weights: expected 8 values, got 1"),
+        (lambda r: tope.Exponential(gain=-2.0), "Exponential: gain .* must be positive"),
+        (lambda r: controller(r).add(tope.Damping(), level=0), "level: must be at least 1"),
+        (
+            lambda r: controller(r).add(tope.FramePosition(frame="eee", target=[0, 0, 0]), level=1),
+            "unknown frame 'eee'; did you mean 'ee'",
+        ),
+        (
+            lambda r: controller(r).add(tope.FrameOrientation(frame="ee", target=2 * np.eye(3)), level=1),
+            "not a rotation",
+        ),
+        (lambda r: tope.FrameOrientation(frame="ee", target=[1, 1, 0, 0]), "not a rotation: the norm"),
+        (lambda r: tope.FramePosition(frame="ee", target=[1, 2]), "expected a point of three numbers"),
+        (
+            lambda r: controller(r).add(tope.Posture(target=[0.0]), level=1),
+            "Posture: target: expected 8 values",
+        ),
+        (lambda r: tope.Robot.from_urdf("nowhere.urdf"), "nowhere.urdf: no such URDF file"),
+    ],
+)
+def test_bad_input_is_refused(robot: tope.Robot, build: object, message: str) -> None:
+    with pytest.raises(tope.ConfigError, match=message):
+        build(robot)  # type: ignore[operator]
