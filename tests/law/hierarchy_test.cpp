@@ -162,7 +162,7 @@ BOOST_AUTO_TEST_CASE(hands_a_lost_direction_down_by_its_formula) {
 }
 
 BOOST_AUTO_TEST_CASE(is_continuous_through_singularities) {
-  for (int seed = 0; seed < 10; ++seed) {
+  for (int seed = 0; seed < 50; ++seed) {
     BOOST_TEST_CONTEXT("seed " << seed) {
       Random random(seed);
       const StackPath path(random, 6, true);
@@ -173,8 +173,7 @@ BOOST_AUTO_TEST_CASE(is_continuous_through_singularities) {
         selection.limits[0] = 1;
         return solve(stack, selection);
       };
-      BOOST_TEST(largest_jump(command, 1000) >= 8.0 * largest_jump(command, 10000));
-      BOOST_TEST(jump_left_after(command, 1000, 5) <= 1e-5);
+      check_continuity(command);
     }
   }
 }

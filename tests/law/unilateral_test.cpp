@@ -68,7 +68,9 @@ BOOST_AUTO_TEST_CASE(every_level_is_optimal) {
     Vector above = Vector::Zero(stack.size());
     for (const ReferenceLevel& level : reference_unilateral(stack, select_all_tasks(stack), defaults)) {
       const Vector y = solve(truncated(stack, level.level)).y;
-      const Vector z = level.open.completeOrthogonalDecomposition().solve(y - above);
+      Eigen::CompleteOrthogonalDecomposition<Matrix> open(level.open.rows(), level.open.cols());
+      open.setThreshold(1e-9);
+      const Vector z = open.compute(level.open).solve(y - above);
       BOOST_TEST(infinity_norm(level.open * z - (y - above)) <= 1e-9);
       const Vector now = stack.motion * above;
       const KktResidual kkt =
@@ -178,21 +180,13 @@ BOOST_AUTO_TEST_CASE(limit_rows_have_no_part) {
 }
 
 BOOST_AUTO_TEST_CASE(is_continuous_along_smooth_paths) {
-  double lowest_ratio = INFINITY;
-  double left = 0.0;
-  for (int seed = 0; seed < 20; ++seed) {
+  for (int seed = 0; seed < 50; ++seed) {
     BOOST_TEST_CONTEXT("seed " << seed) {
       Random random(seed);
       const StackPath path(random, 6, seed % 2 == 0);
-      const auto command = [&](double s) { return solve(path.at(s)).y; };
-      const double ratio = largest_jump(command, 500) / largest_jump(command, 5000);
-      BOOST_TEST(ratio >= 8.0);
-      lowest_ratio = std::min(lowest_ratio, ratio);
-      left = std::max(left, jump_left_after(command, 500, 5));
-      BOOST_TEST(left <= 1e-5);
+      check_continuity([&](double s) { return solve(path.at(s)).y; });
     }
   }
-  BOOST_TEST_MESSAGE("lowest ratio " << lowest_ratio << ", largest change left " << left);
 }
 
 BOOST_AUTO_TEST_CASE(refuses_bad_options) {

@@ -1,48 +1,70 @@
 #include "support/path.hpp"
 
 #include <Eigen/Cholesky>
+#include <boost/test/unit_test.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <sstream>
 
 namespace tope::test {
 namespace {
 
 struct Step {
-  double begin = 0.0;
-  double change = -1.0;
+  double begin;
+  double change;
 };
 
-Step largest_step(const std::function<Vector(double)>& f, double begin, double end, int steps) {
-  Step largest;
+std::vector<Step> all_steps(const std::function<Vector(double)>& f, double begin, double width, int steps) {
+  std::vector<Step> all;
   Vector last = f(begin);
   for (int i = 1; i <= steps; ++i) {
-    const double s = begin + (end - begin) * i / steps;
-    const Vector now = f(s);
-    const double change = (now - last).lpNorm<Eigen::Infinity>();
-    if (change > largest.change) {
-      largest = {.begin = begin + (end - begin) * (i - 1) / steps, .change = change};
-    }
+    const Vector now = f(begin + width * i / steps);
+    all.push_back(
+        {.begin = begin + width * (i - 1) / steps, .change = (now - last).lpNorm<Eigen::Infinity>()});
     last = now;
   }
-  return largest;
+  return all;
+}
+
+bool changes_less(const Step& a, const Step& b) { return a.change < b.change; }
+
+Step largest_step(const std::function<Vector(double)>& f, double begin, double width, int steps) {
+  const std::vector<Step> all = all_steps(f, begin, width, steps);
+  return *std::max_element(all.begin(), all.end(), changes_less);
 }
 
 }  // namespace
 
-double largest_jump(const std::function<Vector(double)>& f, int steps) {
-  return largest_step(f, 0.0, 1.0, steps).change;
+std::vector<double> zoomed_changes(const std::function<Vector(double)>& f, int steps, int rounds) {
+  constexpr std::size_t followed = 50;
+  std::vector<Step> coarse = all_steps(f, 0.0, 1.0, steps);
+  std::sort(coarse.rbegin(), coarse.rend(), changes_less);
+  std::vector<double> largest(static_cast<std::size_t>(rounds) + 1, 0.0);
+  largest[0] = coarse[0].change;
+  for (std::size_t i = 0; i < followed; ++i) {
+    Step step = coarse[i];
+    double width = 1.0 / steps;
+    for (std::size_t round = 1; round < largest.size(); ++round) {
+      step = largest_step(f, step.begin, width, 10);
+      width /= 10.0;
+      largest[round] = std::max(largest[round], step.change);
+    }
+  }
+  return largest;
 }
 
-double jump_left_after(const std::function<Vector(double)>& f, int steps, int rounds) {
-  Step step = largest_step(f, 0.0, 1.0, steps);
-  double width = 1.0 / steps;
-  for (int round = 0; round < rounds; ++round) {
-    step = largest_step(f, step.begin, step.begin + width, 10);
-    width /= 10.0;
+void check_continuity(const std::function<Vector(double)>& f) {
+  constexpr std::size_t rounds = 6;
+  const std::vector<double> changes = zoomed_changes(f, 1000, rounds);
+  BOOST_TEST(changes[rounds - 1] >= 8.0 * changes[rounds]);
+  BOOST_TEST(changes[rounds] <= 1e-3 * changes[0]);
+  std::ostringstream text;
+  for (const double change : changes) {
+    text << ' ' << change;
   }
-  return step.change;
+  BOOST_TEST_MESSAGE("largest changes by steps of 1e-3, 1e-4 ...:" << text.str());
 }
 
 StackPath::Curve StackPath::curve(Random& random, Eigen::Index rows, Eigen::Index cols, double size) {
