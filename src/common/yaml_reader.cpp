@@ -40,9 +40,9 @@ YAML::Node step_into(const YAML::Node& node, const std::string& part, const std:
                     std::to_string(node.size()) + " in that list");
 }
 
-void apply_override(YAML::Node root, const std::string& path, const std::string& value) {
+void apply_override(const YAML::Node& root, const std::string& path, const std::string& value) {
   const std::vector<std::string> parts = split(path, '.');
-  YAML::Node node = std::move(root);
+  YAML::Node node = root;
   for (std::size_t i = 0; i + 1 < parts.size(); ++i) {
     YAML::Node next = step_into(node, parts[i], path);
     if (next.IsDefined() && next.IsScalar()) {
@@ -59,8 +59,8 @@ void apply_override(YAML::Node root, const std::string& path, const std::string&
 
 }  // namespace
 
-YamlReader::YamlReader(YAML::Node node, std::string prefix, std::shared_ptr<const Source> source)
-    : node_(std::move(node)),
+YamlReader::YamlReader(const YAML::Node& node, std::string prefix, std::shared_ptr<const Source> source)
+    : node_(node),
       prefix_(std::move(prefix)),
       source_(std::move(source)),
       known_(std::make_shared<std::vector<std::string>>()) {}
@@ -155,6 +155,7 @@ std::vector<YamlReader> YamlReader::list_of_maps(const std::string& key) const {
     fail(key, "expected a list");
   }
   std::vector<YamlReader> items;
+  items.reserve(node.size());
   for (std::size_t i = 0; i < node.size(); ++i) {
     items.push_back(child(key + "." + std::to_string(i), node[i]));
   }
@@ -226,6 +227,7 @@ std::vector<std::string> YamlReader::texts(const std::string& key) const {
     fail(key, "expected a list of names");
   }
   std::vector<std::string> values;
+  values.reserve(node.size());
   for (std::size_t i = 0; i < node.size(); ++i) {
     values.push_back(scalar<std::string>(key + "." + std::to_string(i), node[i], "text"));
   }

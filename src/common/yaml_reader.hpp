@@ -59,7 +59,7 @@ class YamlReader {
     Overrides overrides;
   };
 
-  YamlReader(YAML::Node node, std::string prefix, std::shared_ptr<const Source> source);
+  YamlReader(const YAML::Node& node, std::string prefix, std::shared_ptr<const Source> source);
 
   YAML::Node require(const std::string& key) const;
   YAML::Node find(const std::string& key) const;

@@ -62,6 +62,7 @@ Controller::Controller(const Robot& robot, const ControllerOptions& options)
       limits_(robot_, options_.limits.rows),
       whitening_(Whitening::velocity(command_weight(robot_, options_.joint_weights))),
       stack_(robot_.nv()),
+      law_(stack_, law_options()),
       solution_(robot_.nv()),
       command_(Vector::Zero(robot_.nv())),
       limit_command_(Vector::Zero(robot_.nv())),
@@ -142,6 +143,12 @@ const Task& Controller::task(TaskHandle handle) const { return *entry(handle).ta
 
 double Controller::activation(TaskHandle handle) const { return entry(handle).activation; }
 
+LawOptions Controller::law_options() const {
+  return {.method = options_.limits.method,
+          .hierarchy = options_.singularities,
+          .unilateral = options_.limits.unilateral};
+}
+
 /// Lays out the stack for the present entries and reserves the law's memory.
 void Controller::rebuild() {
   const int n = robot_.nv();
@@ -171,9 +178,7 @@ void Controller::rebuild() {
   if (field_pending) {
     add_field(entries_.empty() ? 1 : entries_.back().level + 1);
   }
-  law_.emplace(stack_, LawOptions{.method = options_.limits.method,
-                                  .hierarchy = options_.singularities,
-                                  .unilateral = options_.limits.unilateral});
+  law_ = Law(stack_, law_options());
 }
 
 bool Controller::valid(const VectorArg& q, const VectorArg& v, double t, const Eigen::Ref<Vector>& u) const {
@@ -197,7 +202,7 @@ const Status& Controller::update(const VectorArg& q, const VectorArg& v, double 
   stack_.motion_upper = limits_.motion_upper();
   fill_tasks(t);
   fill_field();
-  law_->solve(stack_, solution_);
+  law_.solve(stack_, solution_);
   bound(u);
   report(u);
   return status_;

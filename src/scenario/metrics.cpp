@@ -14,7 +14,7 @@ double percentile(const std::vector<double>& sorted, double fraction) {
   if (sorted.empty()) {
     return 0.0;
   }
-  const auto index = static_cast<std::size_t>(fraction * static_cast<double>(sorted.size() - 1) + 0.5);
+  const auto index = static_cast<std::size_t>(std::lround(fraction * static_cast<double>(sorted.size() - 1)));
   return sorted[index];
 }
 
@@ -74,7 +74,8 @@ void Metrics::observe_state(double t, const Vector& q, const std::vector<double>
   for (std::size_t i = 0; i < tasks_.size(); ++i) {
     TaskResult& result = summary_.tasks[tasks_[i].name];
     result.final_error = errors[i];
-    if (tasks_[i].goal_time && !result.at_goal_time && t >= *tasks_[i].goal_time - 0.5 * dt_) {
+    const std::optional<double>& goal_time = tasks_[i].goal_time;
+    if (goal_time.has_value() && !result.at_goal_time.has_value() && t >= *goal_time - 0.5 * dt_) {
       result.at_goal_time = errors[i];
     }
     reached = reached && (!tasks_[i].goal || errors[i] < kReached);

@@ -38,6 +38,7 @@ std::vector<std::string> log_columns(const Scenario& scenario) {
 
 std::vector<Metrics::TaskInfo> task_infos(const Scenario& scenario) {
   std::vector<Metrics::TaskInfo> infos;
+  infos.reserve(scenario.tasks.size());
   for (const ScenarioTask& task : scenario.tasks) {
     infos.push_back({.name = task.name, .goal = task.task->is_goal(), .goal_time = task.task->duration()});
   }

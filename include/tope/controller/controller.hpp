@@ -75,6 +75,7 @@ class Controller {
   };
 
   const Entry& entry(TaskHandle handle) const;
+  LawOptions law_options() const;
   void rebuild();
   bool valid(const VectorArg& q, const VectorArg& v, double t, const Eigen::Ref<Vector>& u) const;
   void fill_tasks(double t);
@@ -94,7 +95,7 @@ class Controller {
   Stack stack_;
   std::size_t field_row_ = 0;           // index of the field's rows in the stack
   std::vector<std::size_t> entry_row_;  // index of each entry's rows in the stack
-  std::optional<Law> law_;
+  Law law_;
   Solution solution_;
   Vector command_;
   Vector limit_command_;
