@@ -52,15 +52,18 @@ void bind_options(nb::module_& module) {
       .def(
           "__init__",
           [](LimitOptions* self, const std::string& method, double buffer, double gain, double margin,
-             const std::string& ramp, const std::map<std::string, double>& buffers,
-             const UnilateralOptions& unilateral, const PotentialFieldOptions& potential_field,
-             bool enforce_conditions) {
+             const std::string& ramp, const std::map<std::string, double>& buffers, double servo_gain,
+             const std::string& measure, const UnilateralOptions& unilateral,
+             const PotentialFieldOptions& potential_field, bool enforce_conditions) {
             new (self) LimitOptions{
                 .method = limit_method_from(method),
                 .rows = {.buffer = buffer,
                          .buffers = buffers,
                          .gain = gain,
                          .ramp = static_cast<Ramp>(choice("ramp", ramp, {"raised_cosine", "quintic"})),
+                         .servo_gain = servo_gain,
+                         .measure =
+                             static_cast<Measure>(choice("measure", measure, {"predicted", "position"})),
                          .margin = margin},
                 .unilateral = unilateral,
                 .potential_field = potential_field,
@@ -69,7 +72,8 @@ void bind_options(nb::module_& module) {
           nb::kw_only(), "method"_a = to_string(LimitOptions{}.method),
           "buffer"_a = JointLimitOptions{}.buffer, "gain"_a = JointLimitOptions{}.gain,
           "margin"_a = JointLimitOptions{}.margin, "ramp"_a = "raised_cosine",
-          "buffers"_a = std::map<std::string, double>{}, "unilateral"_a = UnilateralOptions{},
+          "buffers"_a = std::map<std::string, double>{}, "servo_gain"_a = JointLimitOptions{}.servo_gain,
+          "measure"_a = "predicted", "unilateral"_a = UnilateralOptions{},
           "potential_field"_a = PotentialFieldOptions{}, "enforce_conditions"_a = true);
 }
 
@@ -115,17 +119,23 @@ void bind_controller(nb::module_& module) {
       .def(
           "__init__",
           [](Controller* self, const Robot& robot, const std::string& mode, double dt,
-             const LimitOptions& limits, const std::vector<double>& joint_weights) {
-            choice("mode", mode, {"velocity"});
+             const LimitOptions& limits, const std::vector<double>& joint_weights,
+             const std::string& null_space, const std::string& wheel_distribution) {
             robot.check_bounds();
-            new (self) Controller(robot, {.mode = Mode::velocity,
-                                          .dt = dt,
-                                          .limits = limits,
-                                          .singularities = {},
-                                          .joint_weights = joint_weights});
+            new (self) Controller(
+                robot, {.mode = static_cast<Mode>(choice("mode", mode, {"velocity", "torque"})),
+                        .dt = dt,
+                        .limits = limits,
+                        .singularities = {},
+                        .null_space = static_cast<NullSpace>(
+                            choice("null_space", null_space, {"compensated", "zero_torque"})),
+                        .wheel_distribution = static_cast<WheelDistribution>(choice(
+                            "wheel_distribution", wheel_distribution, {"minimum_norm", "minimum_peak"})),
+                        .joint_weights = joint_weights});
           },
           "robot"_a, nb::kw_only(), "mode"_a, "dt"_a, "limits"_a = LimitOptions{},
-          "joint_weights"_a = std::vector<double>{}, "Takes a copy of the robot with its bounds as they are.")
+          "joint_weights"_a = std::vector<double>{}, "null_space"_a = "compensated",
+          "wheel_distribution"_a = "minimum_norm", "Takes a copy of the robot with its bounds as they are.")
       .def(
           "add",
           [](Controller& controller, const TaskSpec& spec, int level, double over) {

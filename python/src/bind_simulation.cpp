@@ -21,14 +21,14 @@ nb::object optional_number(const std::optional<double>& value) {
   return value ? nb::cast(*value) : nb::none();
 }
 
-nb::dict describe_joint(const Robot& robot, const JointLimits& limits, int joint) {
+nb::dict describe_joint(const Robot& robot, const JointLimits& limits, const Vector& bound, int joint) {
   nb::dict entry;
   entry["name"] = robot.joint_names()[static_cast<std::size_t>(joint)];
   entry["unit"] = robot.joint_unit(joint);
   entry["lower"] = finite_or_none(limits.lower()[joint]);
   entry["upper"] = finite_or_none(limits.upper()[joint]);
   entry["buffer"] = limits.buffer(joint);
-  entry["bound"] = limits.velocity_limit()[joint];
+  entry["bound"] = finite_or_none(bound[joint]);
   return entry;
 }
 
@@ -43,25 +43,16 @@ nb::dict describe_task(const ScenarioTask& task) {
   return entry;
 }
 
-nb::list notices(const Scenario& scenario) {
-  nb::list list;
-  if (scenario.controller.limits.method == LimitMethod::none) {
-    list.append("Joint limits are not kept: limits.method is none.");
-  }
-  if (scenario.controller.limits.method == LimitMethod::potential_field) {
-    list.append("A potential field acts in the null space of the tasks and keeps no limit by itself.");
-  }
-  if (!scenario.controller.limits.enforce_conditions) {
-    list.append("Safety inequalities are reported, not enforced: limits.conditions is report.");
-  }
-  return list;
+const Vector& command_bound(const Scenario& scenario) {
+  return scenario.controller.mode == Mode::torque ? scenario.robot->effort_limit()
+                                                  : scenario.robot->velocity_limit();
 }
 
 nb::dict describe_scenario(const Scenario& scenario) {
   const JointLimits limits(*scenario.robot, scenario.controller.limits.rows);
   nb::list joints;
   for (int j = 0; j < scenario.robot->nv(); ++j) {
-    joints.append(describe_joint(*scenario.robot, limits, j));
+    joints.append(describe_joint(*scenario.robot, limits, command_bound(scenario), j));
   }
   nb::list tasks;
   for (const ScenarioTask& task : scenario.tasks) {
@@ -71,13 +62,13 @@ nb::dict describe_scenario(const Scenario& scenario) {
   entry["name"] = scenario.name;
   entry["description"] = scenario.description;
   entry["file"] = scenario.file.string();
-  entry["mode"] = "velocity";
+  entry["mode"] = scenario.controller.mode == Mode::torque ? "torque" : "velocity";
   entry["method"] = to_string(scenario.controller.limits.method);
   entry["dt"] = scenario.controller.dt;
   entry["duration"] = scenario.duration;
   entry["joints"] = joints;
   entry["tasks"] = tasks;
-  entry["notices"] = notices(scenario);
+  entry["notices"] = nb::cast(scenario.notices);
   return entry;
 }
 
@@ -115,7 +106,7 @@ nb::dict describe_summary(const Scenario& scenario, const Summary& summary) {
   entry["scenario"] = describe_scenario(scenario);
   entry["max_limit_violation"] = by_joint(robot, summary.limit_violation, ones);
   entry["max_command_jump"] = by_joint(robot, summary.command_jump, ones);
-  entry["command_variation"] = by_joint(robot, summary.command_variation, robot.velocity_limit());
+  entry["command_variation"] = by_joint(robot, summary.command_variation, command_bound(scenario));
   entry["buffer_time"] = by_joint(robot, summary.buffer_time, ones);
   entry["task_error"] = errors;
   entry["time_to_goal"] = optional_number(summary.time_to_goal);

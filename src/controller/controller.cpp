@@ -60,7 +60,8 @@ Controller::Controller(const Robot& robot, const ControllerOptions& options)
       options_(options),
       terms_(robot_),
       limits_(robot_, options_.limits.rows),
-      whitening_(Whitening::velocity(command_weight(robot_, options_.joint_weights))),
+      whitening_(torque_mode() ? Whitening::torque(robot_.nv())
+                               : Whitening::velocity(command_weight(robot_, options_.joint_weights))),
       stack_(robot_.nv()),
       law_(stack_, law_options()),
       solution_(robot_.nv()),
@@ -68,9 +69,18 @@ Controller::Controller(const Robot& robot, const ControllerOptions& options)
       limit_command_(Vector::Zero(robot_.nv())),
       command_lower_(-robot_.velocity_limit()),
       command_upper_(robot_.velocity_limit()),
+      motion_(Vector::Zero(robot_.nv())),
+      limit_motion_(Vector::Zero(robot_.nv())),
+      bias_y_(Vector::Zero(robot_.nv())),
       upper_activation_(Vector::Zero(robot_.nv())),
       lower_activation_(Vector::Zero(robot_.nv())) {
   require_period(options_.dt);
+  if (torque_mode()) {
+    if (!options_.joint_weights.empty()) {
+      throw ConfigError("joint_weights: torque mode weighs joints by the mass matrix; leave them out");
+    }
+    torque_bounds_.emplace(robot_, options_.wheel_distribution);
+  }
   if (options_.limits.method == LimitMethod::potential_field) {
     field_.emplace(robot_, options_.limits.potential_field);
   }
@@ -81,6 +91,9 @@ Controller::Controller(const Robot& robot, const ControllerOptions& options)
 }
 
 std::vector<Condition> Controller::conditions() const {
+  if (torque_mode()) {
+    return {};
+  }
   return velocity_conditions(robot_, limits_, options_.limits.method, options_.limits.unilateral.headroom,
                              options_.dt);
 }
@@ -191,21 +204,48 @@ const Status& Controller::update(const VectorArg& q, const VectorArg& v, double 
   status_ = Status{};
   if (!valid(q, v, t, u)) {
     status_.add(Event::bad_input);
-    u.setZero();
+    stand_still(u);
     return status_;
   }
-  terms_.update(q, v);
-  limits_.update(q);
+  if (torque_mode()) {
+    terms_.update_dynamics(q, v);
+    whitening_.set_mass_matrix(terms_.mass_matrix());
+    stack_.motion = whitening_.motion();
+  } else {
+    terms_.update(q, v);
+  }
+  fill_limits(q, v);
+  fill_tasks(t);
+  fill_field();
+  if (torque_mode() && options_.null_space == NullSpace::zero_torque) {
+    leave_bias_to_tasks();
+  }
+  law_.solve(stack_, solution_);
+  report(torque_mode() ? bound_torque() : bound_velocity());
+  u = command_;
+  return status_;
+}
+
+/// No motion; in torque mode the bias of the last valid state and a torque against its velocity.
+void Controller::stand_still(Eigen::Ref<Vector> u) const {
+  if (!torque_mode() || u.size() != robot_.nv()) {
+    u.setZero();
+    return;
+  }
+  constexpr double damping = 4.0;  // [1/s]
+  u = terms_.bias() - damping * terms_.mass_matrix().diagonal().cwiseProduct(terms_.velocity());
+}
+
+void Controller::fill_limits(const VectorArg& q, const VectorArg& v) {
+  if (torque_mode()) {
+    limits_.update_second_order(q, v);
+  } else {
+    limits_.update(q);
+  }
   stack_.limit_activation = limits_.activation();
   stack_.limit_target = limits_.target();
   stack_.motion_lower = limits_.motion_lower();
   stack_.motion_upper = limits_.motion_upper();
-  fill_tasks(t);
-  fill_field();
-  law_.solve(stack_, solution_);
-  bound(u);
-  report(u);
-  return status_;
 }
 
 void Controller::Entry::advance(double t) {
@@ -225,9 +265,14 @@ void Controller::fill_tasks(double t) {
     if (e.gone()) {
       continue;
     }
-    e.task->update(terms_, t);
+    if (torque_mode()) {
+      e.task->update_second_order(terms_, t, motion_);
+      rows.b = e.task->acceleration();
+    } else {
+      e.task->update(terms_, t);
+      rows.b = e.task->rate();
+    }
     whitening_.rows(e.task->jacobian(), rows.a);
-    rows.b = e.task->rate();
     if (e.task->near_flip()) {
       status_.add(Event::near_flip);
     }
@@ -241,7 +286,11 @@ void Controller::fill_field() {
   field_->update(terms_.position());
   TaskRows& rows = stack_.tasks[field_row_];
   rows.activation = field_->in_range() ? 1.0 : 0.0;
+  rows.a = stack_.motion;
   rows.b = field_->motion();
+  if (torque_mode()) {  // follow the field's speed
+    rows.b = options_.limits.rows.servo_gain * (rows.b - terms_.velocity());
+  }
   for (int joint = 0; joint < robot_.nv(); ++joint) {
     if (field_->repels(joint)) {
       stack_.limit_activation[joint] = 0.0;
@@ -249,14 +298,51 @@ void Controller::fill_field() {
   }
 }
 
-void Controller::bound(Eigen::Ref<Vector> u) {
-  whitening_.command(solution_.y_limits, limit_command_);
-  whitening_.command(solution_.y, command_);
+/// The paper's null space (9): every row pays for the bias of the motion it asks for, and no more is compensated.
+void Controller::leave_bias_to_tasks() {
+  whitening_.from_command(terms_.bias(), bias_y_);
+  for (TaskRows& rows : stack_.tasks) {
+    rows.b.noalias() += rows.a * bias_y_;
+  }
+  limit_motion_.noalias() = stack_.motion * bias_y_;
+  stack_.limit_target += limit_motion_;
+  stack_.motion_lower += limit_motion_;
+  stack_.motion_upper += limit_motion_;
+}
+
+CommandBounds Controller::bound_velocity() {
+  limit_command_.noalias() = whitening_.command() * solution_.y_limits;
+  command_.noalias() = whitening_.command() * solution_.y;
   if (uses_limit_rows(options_.limits.method)) {
     limits_.blended_speed_bounds(stack_.limit_activation, command_lower_, command_upper_);
   }
   const CommandBounds bounds = CommandBounds::apply(command_lower_, command_upper_, limit_command_, command_);
-  u = command_;
+  motion_ = command_;
+  return bounds;
+}
+
+CommandBounds Controller::bound_torque() {
+  if (options_.null_space == NullSpace::zero_torque) {
+    solution_.y -= bias_y_;
+    solution_.y_limits -= bias_y_;
+  }
+  limit_motion_.noalias() = stack_.motion * solution_.y_limits;
+  motion_.noalias() = stack_.motion * solution_.y;
+  limit_command_ = terms_.bias();
+  command_ = terms_.bias();
+  limit_command_.noalias() += whitening_.command() * solution_.y_limits;
+  command_.noalias() += whitening_.command() * solution_.y;
+  if (uses_limit_rows(options_.limits.method)) {
+    limits_.blended_acceleration_bounds(stack_.limit_activation, options_.dt,
+                                        torque_bounds_->acceleration_lower(),
+                                        torque_bounds_->acceleration_upper());
+  }
+  const auto& base = robot_.base();
+  const double yaw = base ? terms_.position()[base->options().joints[2]] : 0.0;
+  return torque_bounds_->apply(limit_motion_, limit_command_, yaw, motion_, command_);
+}
+
+void Controller::report(const CommandBounds& bounds) {
   status_.scale = bounds.scale;
   status_.bound_joint = bounds.clipped >= 0 ? bounds.clipped : bounds.most_binding;
   if (bounds.scale < 1.0) {
@@ -265,12 +351,9 @@ void Controller::bound(Eigen::Ref<Vector> u) {
   if (bounds.clipped >= 0) {
     status_.add(Event::clipped);
   }
-}
-
-void Controller::report(const Eigen::Ref<Vector>& u) {
   switch (options_.limits.method) {
     case LimitMethod::unilateral:
-      limits_.engagement(u, upper_activation_, lower_activation_);
+      limits_.engagement(motion_, upper_activation_, lower_activation_);
       break;
     case LimitMethod::none:
       break;

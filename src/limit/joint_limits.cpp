@@ -13,6 +13,8 @@ void require_positive(const std::string& what, double value) {
   }
 }
 
+constexpr double kEnvelopeRounding = 0.1;  // of v_max: radius of the envelope's corner
+
 }  // namespace
 
 JointLimits::JointLimits(const Robot& robot, const JointLimitOptions& options)
@@ -25,9 +27,13 @@ JointLimits::JointLimits(const Robot& robot, const JointLimitOptions& options)
       target_(Vector::Zero(robot.nv())),
       side_(Vector::Zero(robot.nv())),
       motion_lower_(Vector::Zero(robot.nv())),
-      motion_upper_(Vector::Zero(robot.nv())) {
+      motion_upper_(Vector::Zero(robot.nv())),
+      near_upper_(static_cast<std::size_t>(robot.nv()), 0),
+      near_lower_(static_cast<std::size_t>(robot.nv()), 0),
+      engagement_scale_(options.gain) {
   require_positive("buffer", options.buffer);
   require_positive("gain", options.gain);
+  require_positive("servo_gain", options.servo_gain);
   require_positive("margin", options.margin);
   for (const auto& [joint, buffer] : options.buffers) {
     require_positive("buffer of " + joint, buffer);
@@ -52,6 +58,7 @@ bool JointLimits::limited(int joint) const {
 void JointLimits::update(const VectorArg& q) {
   double furthest = 0.0;
   beyond_ = -1;
+  engagement_scale_ = options_.gain;
   for (int j = 0; j < size(); ++j) {
     const double to_upper = upper_[j] - q[j];
     const double to_lower = q[j] - lower_[j];
@@ -61,12 +68,85 @@ void JointLimits::update(const VectorArg& q) {
     target_[j] = std::isfinite(distance) ? side_[j] * options_.gain * (distance - buffer_[j]) : 0.0;
 
     const double v_max = velocity_limit_[j];
+    near_upper_[static_cast<std::size_t>(j)] = options_.gain * (to_upper - options_.margin) < v_max ? 1 : 0;
+    near_lower_[static_cast<std::size_t>(j)] = options_.gain * (to_lower - options_.margin) < v_max ? 1 : 0;
     motion_upper_[j] = std::clamp(options_.gain * (to_upper - options_.margin), -0.5 * v_max, v_max);
     motion_lower_[j] = -std::clamp(options_.gain * (to_lower - options_.margin), -0.5 * v_max, v_max);
     if (-distance > furthest) {
       furthest = -distance;
       beyond_ = j;
     }
+  }
+}
+
+JointLimits::Envelope JointLimits::envelope(int joint, double distance) const {
+  const double v_max = velocity_limit_[joint];
+  if (!std::isfinite(distance)) {
+    return {.speed = v_max, .slope = 0.0};
+  }
+  // hyperbola below both lines, so that the slope is continuous where they meet
+  const double rounding = kEnvelopeRounding * v_max;
+  const double line = std::max(options_.gain * distance, -0.5 * v_max);
+  const double difference = line - v_max;
+  const double root = std::hypot(difference, rounding);
+  const double slope = options_.gain * distance > -0.5 * v_max ? options_.gain : 0.0;
+  return {.speed = 0.5 * (line + v_max - root), .slope = 0.5 * slope * (1.0 - difference / root)};
+}
+
+double JointLimits::allowed_acceleration(int joint, double distance, double speed, double slack) const {
+  const Envelope allowed = envelope(joint, distance);
+  return -allowed.slope * speed - options_.servo_gain * (speed - allowed.speed + slack);
+}
+
+void JointLimits::update_second_order(const VectorArg& q, const VectorArg& v) {
+  double furthest = 0.0;
+  beyond_ = -1;
+  for (int j = 0; j < size(); ++j) {
+    const double to_upper = upper_[j] - q[j];
+    const double to_lower = q[j] - lower_[j];
+    const double reserve = options_.gain * buffer_[j];  // slack at which a row begins to act
+    const double slack_upper = envelope(j, to_upper).speed - v[j];
+    const double slack_lower = envelope(j, to_lower).speed + v[j];
+    if (options_.measure == Measure::predicted) {
+      side_[j] = slack_upper <= slack_lower ? 1.0 : -1.0;
+      activation_[j] = ramp(options_.ramp, 1.0 - std::min(slack_upper, slack_lower) / reserve);
+      target_[j] = side_[j] > 0.0 ? allowed_acceleration(j, to_upper, v[j], reserve)
+                                  : -allowed_acceleration(j, to_lower, -v[j], reserve);
+    } else {
+      const double distance = std::min(to_upper, to_lower);
+      side_[j] = to_upper <= to_lower ? 1.0 : -1.0;
+      activation_[j] = ramp(options_.ramp, 1.0 - distance / buffer_[j]);
+      const double servo = options_.gain * options_.servo_gain;
+      const double damping = options_.gain + options_.servo_gain;
+      target_[j] =
+          std::isfinite(distance) ? side_[j] * servo * (distance - buffer_[j]) - damping * v[j] : 0.0;
+    }
+    motion_upper_[j] = allowed_acceleration(j, to_upper - options_.margin, v[j], 0.0);
+    motion_lower_[j] = -allowed_acceleration(j, to_lower - options_.margin, -v[j], 0.0);
+    near_upper_[static_cast<std::size_t>(j)] =
+        options_.gain * (to_upper - options_.margin) < velocity_limit_[j] ? 1 : 0;
+    near_lower_[static_cast<std::size_t>(j)] =
+        options_.gain * (to_lower - options_.margin) < velocity_limit_[j] ? 1 : 0;
+    if (-std::min(to_upper, to_lower) > furthest) {
+      furthest = -std::min(to_upper, to_lower);
+      beyond_ = j;
+    }
+  }
+  engagement_scale_ = options_.gain * options_.servo_gain;
+}
+
+void JointLimits::blended_acceleration_bounds(const Vector& activation, double dt, Vector& lower,
+                                              Vector& upper) const {
+  const double kappa = ramp_slope_factor(options_.ramp);
+  const double gain = options_.gain;
+  const double c = 1.0 + 0.5 * gain * dt;
+  for (int j = 0; j < size(); ++j) {
+    const double travel = buffer_[j] * (1.0 - 0.5 * gain * gain * dt * dt) / (kappa * dt);
+    const double largest = std::max(0.0, (travel - velocity_limit_[j]) * gain / c);
+    lower[j] = -largest;
+    upper[j] = largest;
+    Vector& near = side_[j] > 0.0 ? upper : lower;
+    near[j] += activation[j] * (target_[j] - near[j]);
   }
 }
 
@@ -79,14 +159,16 @@ void JointLimits::blended_speed_bounds(const Vector& activation, Vector& lower, 
   }
 }
 
-void JointLimits::engagement(const Vector& v, Eigen::Ref<Vector> upper, Eigen::Ref<Vector> lower) const {
+void JointLimits::engagement(const Vector& motion, Eigen::Ref<Vector> upper, Eigen::Ref<Vector> lower) const {
   for (int j = 0; j < size(); ++j) {
-    const double scale = options_.gain * buffer_[j];
     // a bound that only the speed limit sets is none of a position limit's
-    const bool near_upper = std::isfinite(upper_[j]) && motion_upper_[j] < velocity_limit_[j];
-    const bool near_lower = std::isfinite(lower_[j]) && motion_lower_[j] > -velocity_limit_[j];
-    upper[j] = near_upper ? ramp(options_.ramp, 1.0 - (motion_upper_[j] - v[j]) / scale) : 0.0;
-    lower[j] = near_lower ? ramp(options_.ramp, 1.0 - (v[j] - motion_lower_[j]) / scale) : 0.0;
+    const double scale = engagement_scale_ * buffer_[j];
+    upper[j] = near_upper_[static_cast<std::size_t>(j)] != 0
+                   ? ramp(options_.ramp, 1.0 - (motion_upper_[j] - motion[j]) / scale)
+                   : 0.0;
+    lower[j] = near_lower_[static_cast<std::size_t>(j)] != 0
+                   ? ramp(options_.ramp, 1.0 - (motion[j] - motion_lower_[j]) / scale)
+                   : 0.0;
   }
 }
 

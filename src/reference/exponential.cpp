@@ -12,4 +12,9 @@ void Exponential::rate(double /*t*/, const VectorArg& error, Eigen::Ref<Vector> 
   rate.noalias() = -options_.gain * error;
 }
 
+void Exponential::acceleration(double /*t*/, const VectorArg& error, const VectorArg& error_rate,
+                               Eigen::Ref<Vector> acceleration) const {
+  acceleration = -options_.gain * (options_.gain * error + 2.0 * error_rate);
+}
+
 }  // namespace tope

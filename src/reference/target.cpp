@@ -17,7 +17,8 @@ Target<PointTarget> moving_along_sine(const Vector3& centre, const Vector3& ampl
   const double omega = 2.0 * std::numbers::pi * frequency;
   return Target<PointTarget>(std::function<PointTarget(double)>([centre, amplitude, omega](double t) {
     return PointTarget{.position = centre + std::sin(omega * t) * amplitude,
-                       .velocity = omega * std::cos(omega * t) * amplitude};
+                       .velocity = omega * std::cos(omega * t) * amplitude,
+                       .acceleration = -omega * omega * std::sin(omega * t) * amplitude};
   }));
 }
 

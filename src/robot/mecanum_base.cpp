@@ -17,13 +17,30 @@ MecanumBase::MecanumBase(const MecanumBaseOptions& options) : options_(options) 
   wheel_map_ /= options.wheel_radius;
 }
 
-MecanumBase::Wheels MecanumBase::wheel_speeds(const Eigen::Ref<const Eigen::VectorXd>& v, double yaw) const {
-  const double vx = v[options_.joints[0]];
-  const double vy = v[options_.joints[1]];
+Eigen::Vector3d MecanumBase::to_base(double x, double y, double turn, double yaw) const {
   const double c = std::cos(yaw);
   const double s = std::sin(yaw);
-  const Eigen::Vector3d twist(c * vx + s * vy, -s * vx + c * vy, v[options_.joints[2]]);
-  return wheel_map_ * twist;
+  return {c * x + s * y, -s * x + c * y, turn};
+}
+
+MecanumBase::Wheels MecanumBase::wheel_speeds(const Eigen::Ref<const Eigen::VectorXd>& v, double yaw) const {
+  return wheel_map_ * to_base(v[options_.joints[0]], v[options_.joints[1]], v[options_.joints[2]], yaw);
+}
+
+Eigen::Vector3d MecanumBase::base_wrench(const Eigen::Ref<const Eigen::VectorXd>& u, double yaw) const {
+  return to_base(u[options_.joints[0]], u[options_.joints[1]], u[options_.joints[2]], yaw);
+}
+
+MecanumBase::Wheels MecanumBase::minimum_norm_torques(const Eigen::Vector3d& wrench) const {
+  // the columns of the map are orthogonal, so its pseudo-inverse divides by their squared norms
+  return wheel_map_ * wrench.cwiseQuotient(wheel_map_.colwise().squaredNorm().transpose());
+}
+
+MecanumBase::Wheels MecanumBase::minimum_peak_torques(const Eigen::Vector3d& wrench) const {
+  const Wheels idle(1.0, 1.0, -1.0, -1.0);
+  const Wheels torques = minimum_norm_torques(wrench);
+  const Wheels turned = idle.cwiseProduct(torques);
+  return torques - 0.5 * (turned.maxCoeff() + turned.minCoeff()) * idle;
 }
 
 Eigen::Vector3d MecanumBase::reflected_inertia() const {

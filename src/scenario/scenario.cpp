@@ -3,6 +3,7 @@
 
 #include <tope/common/names.hpp>
 #include <tope/scenario/scenario.hpp>
+#include <tope/task/damping.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -64,6 +65,10 @@ LimitOptions read_limits(const YamlReader& yaml, Robot& robot) {
   limits.rows.buffer = yaml.positive("buffer", limits.rows.buffer);
   limits.rows.gain = yaml.positive("gain", limits.rows.gain);
   limits.rows.margin = yaml.positive("margin", limits.rows.margin);
+  limits.rows.servo_gain = yaml.positive("servo_gain", limits.rows.servo_gain);
+  static const std::vector<std::string> measures{"predicted", "position"};
+  limits.rows.measure =
+      static_cast<Measure>(choice(yaml, "measure", yaml.text("measure", measures[0]), measures));
   static const std::vector<std::string> ramps{"raised_cosine", "quintic"};
   limits.rows.ramp = static_cast<Ramp>(choice(yaml, "ramp", yaml.text("ramp", ramps[0]), ramps));
   static const std::vector<std::string> handling{"enforce", "report"};
@@ -125,6 +130,86 @@ std::vector<ScenarioTask> read_tasks(const YamlReader& yaml, const Robot& robot)
   return tasks;
 }
 
+RigidBodyOptions read_rigid_body(const YamlReader& yaml) {
+  RigidBodyOptions options;
+  static const std::vector<std::string> integrators{"semi_implicit", "rk4"};
+  options.integrator = static_cast<RigidBodyOptions::Integrator>(
+      choice(yaml, "integrator", yaml.text("integrator", "rk4"), integrators));
+  options.substeps = yaml.integer("substeps", options.substeps);
+  options.friction = choice(yaml, "friction", yaml.text("friction", "false"), {"false", "true"}) == 1;
+  options.inertia_scale = yaml.positive("inertia_scale", options.inertia_scale);
+  options.payload = yaml.number("payload", options.payload);
+  options.payload_frame = yaml.text("payload_frame", options.payload_frame);
+  options.torque_noise = yaml.number("torque_noise", options.torque_noise);
+  options.seed = static_cast<std::uint64_t>(yaml.integer("seed", static_cast<int>(options.seed)));
+  options.delay = yaml.number("delay", options.delay);
+  yaml.finish();
+  return options;
+}
+
+/// `plant: {type: ..., options}`; each mode has its own.
+void read_plant(const YamlReader& yaml, Scenario& scenario) {
+  const bool torque = scenario.controller.mode == Mode::torque;
+  scenario.plant = torque ? "rigid_body" : "kinematic";
+  const auto plant = yaml.optional_map("plant");
+  if (!plant) {
+    return;
+  }
+  const std::string type = plant->text("type", scenario.plant);
+  choice(*plant, "type", type, {"kinematic", "rigid_body"});
+  if (type != scenario.plant) {
+    plant->fail("type",
+                "'" + type + "' does not follow commands of this mode; expected '" + scenario.plant + "'");
+  }
+  if (torque) {
+    scenario.rigid_body = read_rigid_body(*plant);
+  }
+  plant->finish();
+}
+
+void read_torque_options(const YamlReader& yaml, ControllerOptions& options) {
+  static const std::vector<std::string> null_spaces{"compensated", "zero_torque"};
+  options.null_space = static_cast<NullSpace>(
+      choice(yaml, "null_space", yaml.text("null_space", null_spaces[0]), null_spaces));
+  static const std::vector<std::string> distributions{"minimum_norm", "minimum_peak"};
+  options.wheel_distribution = static_cast<WheelDistribution>(
+      choice(yaml, "wheel_distribution", yaml.text("wheel_distribution", distributions[0]), distributions));
+}
+
+/// In torque mode some task must take the freedom that is left, or it drifts.
+void add_lowest_level(const Robot& robot, Scenario& scenario) {
+  int lowest = 0;
+  for (const ScenarioTask& task : scenario.tasks) {
+    lowest = std::max(lowest, task.level);
+    if (task.task->size() >= robot.nv()) {
+      return;
+    }
+  }
+  scenario.tasks.push_back(
+      {.name = "damping", .level = lowest + 1, .task = std::make_shared<Damping>(robot)});
+  scenario.notices.push_back(
+      "No task takes all the freedom that is left: a damping task was added at level " +
+      std::to_string(lowest + 1) + ".");
+}
+
+void add_notices(const Robot& robot, Scenario& scenario) {
+  const ControllerOptions& options = scenario.controller;
+  if (options.limits.method == LimitMethod::none) {
+    scenario.notices.emplace_back("Joint limits are not kept: limits.method is none.");
+  }
+  if (options.limits.method == LimitMethod::potential_field) {
+    scenario.notices.emplace_back(
+        "A potential field acts in the null space of the tasks and keeps no limit by itself.");
+  }
+  if (!options.limits.enforce_conditions) {
+    scenario.notices.emplace_back(
+        "Safety inequalities are reported, not enforced: limits.conditions is report.");
+  }
+  if (options.mode == Mode::torque && options.null_space == NullSpace::compensated) {
+    add_lowest_level(robot, scenario);
+  }
+}
+
 }  // namespace
 
 Scenario Scenario::load(const std::filesystem::path& file,
@@ -134,7 +219,8 @@ Scenario Scenario::load(const std::filesystem::path& file,
   scenario.file = file;
   scenario.name = yaml.text("name", file.stem().string());
   scenario.description = yaml.text("description", "");
-  choice(yaml, "mode", yaml.text("mode"), {"velocity"});
+  scenario.controller.mode =
+      static_cast<Mode>(choice(yaml, "mode", yaml.text("mode"), {"velocity", "torque"}));
   scenario.controller.dt = yaml.positive("dt");
   scenario.duration = yaml.positive("duration");
   if (scenario.duration < scenario.controller.dt) {
@@ -151,8 +237,10 @@ Scenario Scenario::load(const std::filesystem::path& file,
     const Vector weights = yaml.vector("joint_weights", robot.nv());
     scenario.controller.joint_weights.assign(weights.begin(), weights.end());
   }
-  static const std::vector<std::string> plants{"kinematic"};
-  scenario.plant = plants[choice(yaml, "plant", yaml.text("plant", plants[0]), plants)];
+  read_plant(yaml, scenario);
+  if (scenario.controller.mode == Mode::torque) {
+    read_torque_options(yaml, scenario.controller);
+  }
   if (const auto log = yaml.optional_map("log")) {
     scenario.log_every = log->integer("every", 1);
     if (scenario.log_every < 1) {
@@ -163,6 +251,7 @@ Scenario Scenario::load(const std::filesystem::path& file,
   scenario.initial = read_initial(yaml, robot);
   scenario.tasks = read_tasks(yaml, robot);
   yaml.finish();
+  add_notices(robot, scenario);
   scenario.robot = std::make_shared<const Robot>(std::move(robot));
   return scenario;
 }

@@ -36,6 +36,19 @@ std::vector<std::string> log_columns(const Scenario& scenario) {
   return columns;
 }
 
+std::unique_ptr<Plant> make_plant(const Scenario& scenario) {
+  if (scenario.plant == "rigid_body") {
+    return std::make_unique<RigidBody>(*scenario.robot, scenario.rigid_body, scenario.controller.dt);
+  }
+  return std::make_unique<Kinematic>(*scenario.robot);
+}
+
+/// Bound of each joint's command (n).
+const Vector& command_bound(const Scenario& scenario) {
+  return scenario.controller.mode == Mode::torque ? scenario.robot->effort_limit()
+                                                  : scenario.robot->velocity_limit();
+}
+
 std::vector<Metrics::TaskInfo> task_infos(const Scenario& scenario) {
   std::vector<Metrics::TaskInfo> infos;
   infos.reserve(scenario.tasks.size());
@@ -63,7 +76,7 @@ Simulation::Simulation(const Scenario& scenario, const SimulationOptions& option
     : scenario_(scenario),
       options_(options),
       controller_(*scenario.robot, scenario.controller),
-      plant_(std::make_unique<Kinematic>(*scenario.robot)),
+      plant_(make_plant(scenario)),
       log_(log_columns(scenario), options.log_file, options.keep_log) {
   for (const ScenarioTask& task : scenario_.tasks) {
     handles_.push_back(controller_.add(task.level, *task.task));
@@ -77,7 +90,7 @@ Summary Simulation::run() {
   const auto cycles = static_cast<int>(std::lround(scenario_.duration / dt));
   const int progress_every = std::max(1, cycles / kProgressSteps);
   const JointLimits& limits = controller_.limits();
-  Metrics metrics(limits.lower(), limits.upper(), buffers(limits), limits.velocity_limit(),
+  Metrics metrics(limits.lower(), limits.upper(), buffers(limits), command_bound(scenario_),
                   task_infos(scenario_), cycles, dt);
   plant_->reset(scenario_.initial);
   Vector u = Vector::Zero(scenario_.robot->nv());
@@ -110,6 +123,18 @@ void Simulation::evaluate_errors() {
   }
 }
 
+/// Speeds [rad/s] or torques [Nm] of the wheels under the command u.
+MecanumBase::Wheels Simulation::wheel_commands(const MecanumBase& base, const Vector& u) const {
+  const double yaw = plant_->position()[base.options().joints[2]];
+  if (scenario_.controller.mode == Mode::velocity) {
+    return base.wheel_speeds(u, yaw);
+  }
+  const Eigen::Vector3d wrench = base.base_wrench(u, yaw);
+  return scenario_.controller.wheel_distribution == WheelDistribution::minimum_peak
+             ? base.minimum_peak_torques(wrench)
+             : base.minimum_norm_torques(wrench);
+}
+
 void Simulation::write_row(double t, const Vector& u) {
   const auto append = [this](const auto& values) { row_.insert(row_.end(), values.begin(), values.end()); };
   row_.assign(1, t);
@@ -123,7 +148,7 @@ void Simulation::write_row(double t, const Vector& u) {
   }
   row_.push_back(controller_.status().scale);
   if (const auto& base = scenario_.robot->base()) {
-    append(base->wheel_speeds(u, plant_->position()[base->options().joints[2]]));
+    append(wheel_commands(*base, u));
   }
   log_.write(row_, event_names(controller_.status()));
 }

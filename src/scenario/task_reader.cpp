@@ -99,8 +99,9 @@ std::shared_ptr<const Task> read_joints(const YamlReader& yaml, const Robot& rob
   return std::make_shared<JointPosition>(robot, yaml.numbers("target"), read_reference(yaml));
 }
 
-std::shared_ptr<const Task> read_damping(const YamlReader& /*yaml*/, const Robot& robot) {
-  return std::make_shared<Damping>(robot);
+std::shared_ptr<const Task> read_damping(const YamlReader& yaml, const Robot& robot) {
+  return yaml.has("gain") ? std::make_shared<Damping>(robot, yaml.positive("gain"))
+                          : std::make_shared<Damping>(robot);
 }
 
 /// Registration: a new task type is one line here.

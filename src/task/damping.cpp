@@ -2,7 +2,8 @@
 
 namespace tope {
 
-Damping::Damping(const Robot& robot) : Task(robot.nv(), robot.nv(), Exponential{}) {
+// an exponential reference asks for -2 k e' where the error is zero
+Damping::Damping(const Robot& robot, double gain) : Task(robot.nv(), robot.nv(), Exponential{0.5 * gain}) {
   jacobian_.setIdentity();
 }
 

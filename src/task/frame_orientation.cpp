@@ -27,4 +27,11 @@ void FrameOrientation::evaluate(const RobotTerms& terms, double t) {
                                      target_.at(t), error_, jacobian_, feedforward_);
 }
 
+void FrameOrientation::evaluate_drift(const RobotTerms& terms, double t) {
+  drift_ = orientation_drift({.rotation = terms.frame_rotation(frame_),
+                              .angular_velocity = frame_jacobian_.bottomRows<3>() * terms.velocity(),
+                              .angular_acceleration = terms.frame_drift(frame_).tail<3>()},
+                             target_.at(t), error_, error_rate_);
+}
+
 }  // namespace tope

@@ -34,4 +34,14 @@ void FramePose::evaluate(const RobotTerms& terms, double t) {
                             error_.tail<3>(), jacobian_.bottomRows<3>(), feedforward_.tail<3>());
 }
 
+void FramePose::evaluate_drift(const RobotTerms& terms, double t) {
+  const Eigen::Matrix<double, 6, 1> frame_drift = terms.frame_drift(frame_);
+  drift_.head<3>() = frame_drift.head<3>() - position_.at(t).acceleration;
+  drift_.tail<3>() =
+      orientation_drift({.rotation = terms.frame_rotation(frame_),
+                         .angular_velocity = frame_jacobian_.bottomRows<3>() * terms.velocity(),
+                         .angular_acceleration = frame_drift.tail<3>()},
+                        rotation_.at(t), error_.tail<3>(), error_rate_.tail<3>());
+}
+
 }  // namespace tope

@@ -28,4 +28,8 @@ void FramePosition::evaluate(const RobotTerms& terms, double t) {
   feedforward_ = target.velocity;
 }
 
+void FramePosition::evaluate_drift(const RobotTerms& terms, double t) {
+  drift_ = terms.frame_drift(frame_).head<3>() - target_.at(t).acceleration;
+}
+
 }  // namespace tope

@@ -2,6 +2,8 @@
 
 #include <tope/task/rotation_error.hpp>
 
+#include <Eigen/Geometry>
+
 #include <numbers>
 
 namespace tope {
@@ -16,6 +18,17 @@ bool fill_orientation_rows(const Matrix3& rotation, const Eigen::Ref<const Matri
   jacobian.noalias() = world_to_error * angular_jacobian;
   feedforward.noalias() = world_to_error * target.angular_velocity;
   return e.norm() > std::numbers::pi - 0.05;
+}
+
+Vector3 orientation_drift(const RotationTarget& frame, const RotationTarget& target, const Vector3& error,
+                          const Vector3& error_rate) {
+  // e' = J_r^-1(e) w with w = R^T (w_frame - w_target); differentiate both factors
+  const Matrix3 world_to_frame = frame.rotation.transpose();
+  const Vector3 relative = world_to_frame * (frame.angular_velocity - target.angular_velocity);
+  const Vector3 relative_rate = world_to_frame * (frame.angular_acceleration - target.angular_acceleration) -
+                                (world_to_frame * frame.angular_velocity).cross(relative);
+  return inverse_right_jacobian_rate(error, error_rate) * relative +
+         inverse_right_jacobian(error) * relative_rate;
 }
 
 }  // namespace tope

@@ -12,4 +12,8 @@ bool fill_orientation_rows(const Matrix3& rotation, const Eigen::Ref<const Matri
                            const RotationTarget& target, Eigen::Ref<Vector> error,
                            Eigen::Ref<Matrix> jacobian, Eigen::Ref<Vector> feedforward);
 
+/// d2e/dt2 of e = log(R_d^T R) for a frame that moves as `frame` says (world axes), no joint accelerating.
+Vector3 orientation_drift(const RotationTarget& frame, const RotationTarget& target, const Vector3& error,
+                          const Vector3& error_rate);
+
 }  // namespace tope

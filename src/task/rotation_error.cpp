@@ -5,6 +5,36 @@
 #include <cmath>
 
 namespace tope {
+namespace {
+
+constexpr double kSmallAngle = 1e-2;  // below it, series: the closed forms cancel
+
+Matrix3 skew_matrix(const Vector3& e) {
+  Matrix3 skew;
+  skew << 0.0, -e.z(), e.y(), e.z(), 0.0, -e.x(), -e.y(), e.x(), 0.0;
+  return skew;
+}
+
+/// c = (1 - (angle/2) cot(angle/2)) / angle^2.
+double quadratic_coefficient(double angle) {
+  const double squared = angle * angle;
+  return angle < kSmallAngle ? 1.0 / 12.0 + squared / 720.0 + squared * squared / 30240.0
+                             : (1.0 - 0.5 * angle / std::tan(0.5 * angle)) / squared;
+}
+
+/// (dc/d angle) / angle.
+double quadratic_coefficient_slope(double angle) {
+  const double squared = angle * angle;
+  if (angle < kSmallAngle) {
+    return 1.0 / 360.0 + squared / 7560.0;
+  }
+  const double sine = std::sin(0.5 * angle);
+  const double product = 0.5 * angle / std::tan(0.5 * angle);
+  const double product_slope = 0.5 / std::tan(0.5 * angle) - 0.25 * angle / (sine * sine);
+  return -(product_slope / squared + 2.0 * (1.0 - product) / (squared * angle)) / angle;
+}
+
+}  // namespace
 
 Vector3 rotation_vector(const Matrix3& rotation) {
   Eigen::Quaterniond q(rotation);
@@ -18,13 +48,17 @@ Vector3 rotation_vector(const Matrix3& rotation) {
 }
 
 Matrix3 inverse_right_jacobian(const Vector3& e) {
+  const Matrix3 skew = skew_matrix(e);
+  return Matrix3::Identity() + 0.5 * skew + quadratic_coefficient(e.norm()) * skew * skew;
+}
+
+Matrix3 inverse_right_jacobian_rate(const Vector3& e, const Vector3& e_rate) {
   const double angle = e.norm();
-  // (1 - (angle/2) cot(angle/2)) / angle^2, by its series where the quotient would cancel
-  const double c = angle < 1e-3 ? 1.0 / 12.0 + angle * angle / 720.0
-                                : (1.0 - 0.5 * angle / std::tan(0.5 * angle)) / (angle * angle);
-  Matrix3 skew;
-  skew << 0.0, -e.z(), e.y(), e.z(), 0.0, -e.x(), -e.y(), e.x(), 0.0;
-  return Matrix3::Identity() + 0.5 * skew + c * skew * skew;
+  const Matrix3 skew = skew_matrix(e);
+  const Matrix3 skew_rate = skew_matrix(e_rate);
+  const double c = quadratic_coefficient(angle);
+  const double c_rate = quadratic_coefficient_slope(angle) * e.dot(e_rate);
+  return 0.5 * skew_rate + c_rate * skew * skew + c * (skew_rate * skew + skew * skew_rate);
 }
 
 }  // namespace tope

@@ -78,10 +78,15 @@ class Controller {
   LawOptions law_options() const;
   void rebuild();
   bool valid(const VectorArg& q, const VectorArg& v, double t, const Eigen::Ref<Vector>& u) const;
+  bool torque_mode() const { return options_.mode == Mode::torque; }
+  void stand_still(Eigen::Ref<Vector> u) const;
+  void fill_limits(const VectorArg& q, const VectorArg& v);
   void fill_tasks(double t);
   void fill_field();
-  void bound(Eigen::Ref<Vector> u);
-  void report(const Eigen::Ref<Vector>& u);
+  void leave_bias_to_tasks();
+  CommandBounds bound_velocity();
+  CommandBounds bound_torque();
+  void report(const CommandBounds& bounds);
 
   Robot robot_;
   ControllerOptions options_;
@@ -101,6 +106,10 @@ class Controller {
   Vector limit_command_;
   Vector command_lower_;
   Vector command_upper_;
+  std::optional<TorqueBounds> torque_bounds_;
+  Vector motion_;        // velocity or acceleration that the last command asked for
+  Vector limit_motion_;  // its part that serves the limits alone
+  Vector bias_y_;        // L^-1 h
   Vector upper_activation_;
   Vector lower_activation_;
   Status status_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tope/controller/torque_bounds.hpp>
 #include <tope/law/law.hpp>
 #include <tope/limit/joint_limits.hpp>
 #include <tope/limit/potential_field.hpp>
@@ -11,6 +12,13 @@ namespace tope {
 /// What the command is.
 enum class Mode {
   velocity,  ///< u = joint velocities [rad/s or m/s]
+  torque,    ///< u = joint torques and forces [Nm or N]
+};
+
+/// What moves the joints that no task asks for, in torque mode.
+enum class NullSpace {
+  compensated,  ///< the bias h is always compensated
+  zero_torque,  ///< nothing, as in the paper: the null space falls and drifts
 };
 
 struct LimitOptions {
@@ -25,8 +33,10 @@ struct ControllerOptions {
   Mode mode = Mode::velocity;
   double dt = 1e-3;  ///< period of the loop [s]
   LimitOptions limits;
-  Hierarchy::Options singularities;  ///< of every method but unilateral
-  /// Cost of each joint's motion (nv), positive: the law minimises sum weight_j v_j^2 where tasks leave a
+  Hierarchy::Options singularities;                                        ///< of every method but unilateral
+  NullSpace null_space = NullSpace::compensated;                           ///< torque mode
+  WheelDistribution wheel_distribution = WheelDistribution::minimum_norm;  ///< torque mode
+  /// Velocity mode: cost of each joint's motion (nv), positive: the law minimises sum weight_j v_j^2 where tasks leave a
   /// choice. Empty: all ones.
   std::vector<double> joint_weights;
 };

@@ -6,23 +6,41 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 namespace tope {
+
+/// What the activation of a limit row is measured on in torque mode.
+enum class Measure {
+  predicted,  ///< the position that the joint is braking to, with the speed bound in the same row: safe
+  position,   ///< the position alone, as in the paper: does not protect the limit, kept for comparison
+};
 
 struct JointLimitOptions {
   double buffer = 0.1;                    ///< beta: width of the zone inside each limit [rad or m]
   std::map<std::string, double> buffers;  ///< joints with a buffer of their own
   double gain = 10.0;                     ///< lambda: speed allowed or asked for per distance [1/s]
   Ramp ramp = Ramp::raised_cosine;        ///< how activations rise across the buffer
-  double margin = 1e-3;  ///< m: distance kept from the limit by the unilateral law [rad or m]
+  double servo_gain = 20.0;  ///< gamma_2: how fast speed returns below the envelope, torque mode [1/s]
+  Measure measure = Measure::predicted;  ///< of the activations in torque mode
+  double margin = 1e-3;                  ///< m: distance kept from the limit by the unilateral law [rad or m]
 };
 
-/// The limit rows of a robot's joints in velocity mode: one row a joint, whichever side is near.
+/// The limit rows of a robot's joints: one row a joint, whichever side is near.
 ///
+/// Velocity mode, update().
 /// With the buffer's inner edge q~ = upper - beta (or lower + beta), (20)-(21): activation xi rises from 0 at
 /// q~ to 1 at the limit, (23)-(25), and the row asks for v = gain (q~ - q). As bounds for the unilateral law:
 ///   -min(v_max, gain (q - lower - m)) <= v <= min(v_max, gain (upper - m - q)),
 /// which lead back where a joint is beyond its limit, at no more than half of v_max.
+///
+/// Torque mode, update_second_order(). The allowed speed towards the upper limit is the envelope
+///   V(q) = smooth-min(gain (upper - q), v_max),
+/// and the row, with slack s = V - v, has xi = ramp(1 - s / (gain beta)) and asks for the acceleration
+///   V' v - servo_gain (v - V + gain beta),
+/// which away from v_max is (19) with lambda_p = gain servo_gain, lambda_v = gain + servo_gain, measured on the
+/// predicted position q + v / gain. As bounds for the unilateral law, with the margin taken off the limit:
+///   dv/dt <= V' v - servo_gain (v - V),  and the mirror image below.
 class JointLimits {
  public:
   /// Errors: ConfigError for an unknown joint in `buffers`, buffers that overlap or a value that is not
@@ -31,6 +49,8 @@ class JointLimits {
 
   /// Evaluates every row at q (nq). Never allocates.
   void update(const VectorArg& q);
+  /// The same for torque mode, at q (nq) and v (nv): motions are accelerations.
+  void update_second_order(const VectorArg& q, const VectorArg& v);
 
   int size() const { return static_cast<int>(lower_.size()); }
   const Vector& activation() const { return activation_; }  ///< xi of each joint's row (n)
@@ -42,12 +62,15 @@ class JointLimits {
   /// (1 - xi) v_max: bounded by v_max alone it can carry the joint through its limit. `activation` (n) is xi, zero
   /// for joints whose rows take no part.
   void blended_speed_bounds(const Vector& activation, Vector& lower, Vector& upper) const;
+  /// Bounds (n) of an acceleration that blends limit rows: (1 - xi) A + xi target towards the limit, where A is the
+  /// largest acceleration for which the buffer is wide enough at period dt [s].
+  void blended_acceleration_bounds(const Vector& activation, double dt, Vector& lower, Vector& upper) const;
   /// Joint furthest beyond a limit, or -1.
   int beyond() const { return beyond_; }
 
-  /// How far motion v (n) engages each bound of the unilateral law: ramp(1 - slack / (gain beta)), 1 where it
-  /// presses.
-  void engagement(const Vector& v, Eigen::Ref<Vector> upper, Eigen::Ref<Vector> lower) const;
+  /// How far a motion (n) engages each bound of the unilateral law: ramp(1 - slack / (gain beta)), in torque mode
+  /// ramp(1 - slack / (gain servo_gain beta)); 1 where it presses.
+  void engagement(const Vector& motion, Eigen::Ref<Vector> upper, Eigen::Ref<Vector> lower) const;
   /// Activation by side: that of the row, on the side where the joint is.
   void activation_by_side(Eigen::Ref<Vector> upper, Eigen::Ref<Vector> lower) const;
 
@@ -60,6 +83,15 @@ class JointLimits {
   bool limited(int joint) const;
 
  private:
+  /// Allowed speed towards a limit at `distance`, and its slope with respect to the distance.
+  struct Envelope {
+    double speed;
+    double slope;
+  };
+  Envelope envelope(int joint, double distance) const;
+  /// Acceleration allowed towards a limit at `distance` and approach speed `speed`, `slack` below the envelope.
+  double allowed_acceleration(int joint, double distance, double speed, double slack) const;
+
   JointLimitOptions options_;
   Vector lower_;
   Vector upper_;
@@ -70,6 +102,9 @@ class JointLimits {
   Vector side_;  // +1 where the upper limit's row applies, -1 the lower's
   Vector motion_lower_;
   Vector motion_upper_;
+  std::vector<char> near_upper_;  // 1 where the position limit sets motion_upper_, not the speed limit
+  std::vector<char> near_lower_;
+  double engagement_scale_;  // slack per buffer at which engagement() begins
   int beyond_ = -1;
 };
 

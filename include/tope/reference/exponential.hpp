@@ -6,7 +6,8 @@
 
 namespace tope {
 
-/// Exponential convergence of a task's error, (11) of the paper: rate = -gain e.
+/// Exponential convergence of a task's error: rate = -gain e, (11) of the paper, or of second order with a double pole
+/// at -gain, acceleration = -gain^2 e - 2 gain e_rate, (12).
 class Exponential {
  public:
   struct Options {
@@ -19,8 +20,13 @@ class Exponential {
   explicit Exponential(const Options& options);
 
   void start(double /*t*/, const VectorArg& /*error*/) {}
+  void start(double /*t*/, const VectorArg& /*error*/, const VectorArg& /*rate*/,
+             const VectorArg& /*acceleration*/) {}
   /// Desired rate of the error (m) at time t [s].
   void rate(double t, const VectorArg& error, Eigen::Ref<Vector> rate) const;
+  /// Desired acceleration of the error (m) at time t [s], given the error and its rate.
+  void acceleration(double t, const VectorArg& error, const VectorArg& error_rate,
+                    Eigen::Ref<Vector> acceleration) const;
   /// Seconds from the start to the promised arrival: none.
   std::optional<double> duration() const { return std::nullopt; }
   void resize(int /*size*/) {}

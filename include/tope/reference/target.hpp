@@ -8,14 +8,16 @@ namespace tope {
 
 /// Where a point is to be at one moment.
 struct PointTarget {
-  Vector3 position;                    ///< [m]
-  Vector3 velocity = Vector3::Zero();  ///< [m/s]
+  Vector3 position;                        ///< [m]
+  Vector3 velocity = Vector3::Zero();      ///< [m/s]
+  Vector3 acceleration = Vector3::Zero();  ///< [m/s2]
 };
 
 /// How a frame is to be turned at one moment.
 struct RotationTarget {
-  Matrix3 rotation;                            ///< world_R_target
-  Vector3 angular_velocity = Vector3::Zero();  ///< along the axes of the world [rad/s]
+  Matrix3 rotation;                                ///< world_R_target
+  Vector3 angular_velocity = Vector3::Zero();      ///< along the axes of the world [rad/s]
+  Vector3 angular_acceleration = Vector3::Zero();  ///< likewise [rad/s2]
 };
 
 /// A target that stands still or moves with time t [s]. A function must neither allocate nor throw: it is

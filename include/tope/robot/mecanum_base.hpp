@@ -33,6 +33,16 @@ class MecanumBase {
   /// Wheel speeds [rad/s] for the joint velocities `v` (nv) of the whole robot at yaw angle `yaw` [rad].
   Wheels wheel_speeds(const Eigen::Ref<const Eigen::VectorXd>& v, double yaw) const;
 
+  /// Wheel torques [Nm] of least norm that give a base wrench (f_x, f_y [N], moment [Nm]) along the base's axes.
+  Wheels minimum_norm_torques(const Eigen::Vector3d& wrench) const;
+  /// Wheel torques of least peak for it: the least-norm ones, shifted along (1, 1, -1, -1), which moves nothing, until
+  /// the largest torque either way is the same.
+  Wheels minimum_peak_torques(const Eigen::Vector3d& wrench) const;
+  /// What a wheel torque of each drive gives at the base; inverse of both maps above.
+  Eigen::Vector3d wrench(const Wheels& torques) const { return wheel_map_.transpose() * torques; }
+  /// Base wrench along the base's axes of the joint forces `u` (nv) at yaw angle `yaw` [rad].
+  Eigen::Vector3d base_wrench(const Eigen::Ref<const Eigen::VectorXd>& u, double yaw) const;
+
   /// What the wheels' rotors add to the inertia at the joints x, y [kg] and yaw [kg m2]: the diagonal of A^T
   /// J A.
   Eigen::Vector3d reflected_inertia() const;
@@ -40,6 +50,8 @@ class MecanumBase {
   const MecanumBaseOptions& options() const { return options_; }
 
  private:
+  Eigen::Vector3d to_base(double x, double y, double turn, double yaw) const;
+
   MecanumBaseOptions options_;
   WheelMap wheel_map_;
 };

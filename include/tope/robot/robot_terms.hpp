@@ -7,7 +7,7 @@
 
 namespace tope {
 
-/// The robot's kinematic terms at one state: the scratch that one controller owns. Never allocates after
+/// The robot's kinematic and dynamic terms at one state: the scratch that one controller owns. Never allocates after
 /// construction.
 class RobotTerms {
  public:
@@ -20,6 +20,8 @@ class RobotTerms {
 
   /// Forward kinematics and joint Jacobians at q (nq) and v (nv).
   void update(const VectorArg& q, const VectorArg& v);
+  /// The same, and with it the terms of the equations of motion (1): mass matrix, bias, drift of every frame.
+  void update_dynamics(const VectorArg& q, const VectorArg& v);
 
   const Vector& position() const;  ///< q of the last update (nq)
   const Vector& velocity() const;  ///< v of the last update (nv)
@@ -31,6 +33,15 @@ class RobotTerms {
   /// Jacobian (6 x nv) of a frame: linear velocity of its origin over angular velocity, both along the axes
   /// of the world.
   void frame_jacobian(int frame, Eigen::Ref<Matrix> jacobian) const;
+
+  /// What follows needs update_dynamics().
+  /// H (nv x nv), symmetric, rotor inertia included [kg, kg m, kg m2].
+  const Matrix& mass_matrix() const;
+  /// h (nv): Coriolis, centrifugal and gravity forces [N or Nm].
+  const Vector& bias() const;
+  /// Jdot v of a frame (6), in the order and along the axes of frame_jacobian(): the acceleration that it would have if
+  /// no joint accelerated.
+  Eigen::Matrix<double, 6, 1> frame_drift(int frame) const;
 
  private:
   struct Scratch;

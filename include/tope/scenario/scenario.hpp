@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tope/controller/controller.hpp>
+#include <tope/plant/rigid_body.hpp>
 #include <tope/robot/robot.hpp>
 #include <tope/task/task.hpp>
 
@@ -26,11 +27,13 @@ struct Scenario {
   std::filesystem::path file;
   std::shared_ptr<const Robot> robot;
   ControllerOptions controller;
-  std::string plant;      ///< "kinematic"
+  std::string plant;  ///< "kinematic" or "rigid_body"
+  RigidBodyOptions rigid_body;
   Vector initial;         ///< q at t = 0 (nq)
   double duration = 0.0;  ///< [s]
   int log_every = 1;      ///< cycles between rows of the log
   std::vector<ScenarioTask> tasks;
+  std::vector<std::string> notices;  ///< what was added or is worth knowing, a sentence each
 
   /// Reads a file, with "--set" overrides (dotted key -> YAML value). Errors: ConfigError naming file, line
   /// and key.

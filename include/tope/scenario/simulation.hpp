@@ -30,6 +30,7 @@ class Simulation {
   const Log& log() const { return log_; }
 
  private:
+  MecanumBase::Wheels wheel_commands(const MecanumBase& base, const Vector& u) const;
   void write_row(double t, const Vector& u);
   void evaluate_errors();
 

@@ -4,11 +4,12 @@
 
 namespace tope {
 
-/// Brings every joint to rest: asks for v = 0, one row a joint. Meant for the lowest level, where it takes
+/// Brings every joint to rest: asks for v = 0, and in torque mode for dv/dt = -gain v, one row a joint. Meant for the lowest level, where it takes
 /// what freedom is left. Its error is zero by definition.
 class Damping final : public Task {
  public:
-  explicit Damping(const Robot& robot);
+  /// The gain [1/s] is for torque mode. Errors: ConfigError unless it is positive and finite.
+  explicit Damping(const Robot& robot, double gain = 4.0);
 
   std::string_view type() const override { return "damping"; }
   std::string_view error_unit() const override { return "mixed"; }

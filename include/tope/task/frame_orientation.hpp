@@ -23,6 +23,7 @@ class FrameOrientation final : public Task {
 
  private:
   void evaluate(const RobotTerms& terms, double t) override;
+  void evaluate_drift(const RobotTerms& terms, double t) override;
 
   int frame_;
   Target<RotationTarget> target_;

@@ -24,6 +24,7 @@ class FramePose final : public Task {
 
  private:
   void evaluate(const RobotTerms& terms, double t) override;
+  void evaluate_drift(const RobotTerms& terms, double t) override;
 
   int frame_;
   Target<PointTarget> position_;

@@ -22,6 +22,7 @@ class FramePosition final : public Task {
 
  private:
   void evaluate(const RobotTerms& terms, double t) override;
+  void evaluate_drift(const RobotTerms& terms, double t) override;
 
   int frame_;
   Target<PointTarget> target_;

@@ -11,4 +11,7 @@ Vector3 rotation_vector(const Matrix3& rotation);
 /// angular velocity along the axes of the rotating frame (Sola et al., "A micro Lie theory", eq. 144).
 Matrix3 inverse_right_jacobian(const Vector3& e);
 
+/// Time derivative of inverse_right_jacobian(e) as e moves with rate `e_rate`.
+Matrix3 inverse_right_jacobian_rate(const Vector3& e, const Vector3& e_rate);
+
 }  // namespace tope

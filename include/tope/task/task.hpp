@@ -27,6 +27,8 @@ class Task {
   /// Evaluates the task at the robot's state and time t [s]. Never allocates or throws. The first call starts
   /// the reference.
   void update(const RobotTerms& terms, double t);
+  /// The same for second order; `acceleration` (nv) is what the joints were last commanded to.
+  void update_second_order(const RobotTerms& terms, double t, const Vector& acceleration);
   /// Lets the next update() start the reference anew.
   void restart() { started_ = false; }
 
@@ -37,6 +39,13 @@ class Task {
   /// Right-hand side b of J v = b (m): the reference's rate of the error plus what the target's motion asks
   /// for (5).
   const Vector& rate() const { return rate_; }
+  /// Right-hand side b of J dv/dt = b (m) after update_second_order(): the reference's acceleration less the
+  /// drift, (7).
+  const Vector& acceleration() const { return acceleration_; }
+  /// de/dt (m) after update_second_order().
+  const Vector& error_rate() const { return error_rate_; }
+  /// d2e/dt2 (m) if no joint accelerated, after update_second_order().
+  const Vector& drift() const { return drift_; }
   /// Seconds from start to promised arrival, if the reference promises one.
   std::optional<double> duration() const;
   /// True when a rotation error lies within 0.05 rad of pi, where its direction is about to flip.
@@ -51,14 +60,19 @@ class Task {
 
   /// Fills error_, jacobian_ and feedforward_.
   virtual void evaluate(const RobotTerms& terms, double t) = 0;
+  /// Fills drift_, after evaluate() and error_rate_. Tasks whose Jacobian and target stand still have none.
+  virtual void evaluate_drift(const RobotTerms& /*terms*/, double /*t*/) {}
 
   Vector error_;
   Matrix jacobian_;
   Vector feedforward_;  ///< rate of the error's target, so that de/dt = J v - feedforward
+  Vector error_rate_;   ///< de/dt
+  Vector drift_;        ///< d2e/dt2 if no joint accelerated
   bool near_flip_ = false;
 
  private:
   Vector rate_;
+  Vector acceleration_;
   Reference reference_;
   bool started_ = false;
 };

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <tope/common/types.hpp>
+#include <tope/law/command_bounds.hpp>
+#include <tope/robot/robot.hpp>
+
+namespace tope {
+
+/// How the torques of four wheels share the wrench of the base.
+enum class WheelDistribution {
+  minimum_norm,  ///< least sum of squares, (2) of the paper
+  minimum_peak,  ///< least largest torque: up to half as much again before a wheel meets its bound
+};
+
+/// The bounds of torque mode: of each joint's torque, of each wheel's torque, and of the acceleration that limit rows
+/// leave. Keeps all of them by one scale of the tasks' share.
+class TorqueBounds {
+ public:
+  TorqueBounds(const Robot& robot, WheelDistribution distribution);
+
+  /// Bounds (n) of the acceleration for the next apply().
+  Vector& acceleration_lower() { return acceleration_lower_; }
+  Vector& acceleration_upper() { return acceleration_upper_; }
+
+  /// What the limits (and the bias) ask for, `first_*`, and the whole command, as accelerations and as torques (n each),
+  /// at yaw angle `yaw` of the base [rad]. Scales `acceleration` and `torque`; clips `first_torque` where it is beyond a
+  /// bound by itself. The joints in the result are indices of joints; a wheel's bound counts for the base's x.
+  CommandBounds apply(const Vector& first_acceleration, Vector& first_torque, double yaw,
+                      Vector& acceleration, Vector& torque);
+
+ private:
+  void fill(const Vector& acceleration, const Vector& torque, double yaw, Vector& rows) const;
+  int joint_of(int row) const;
+
+  Robot robot_;
+  Matrix wheel_rows_;  // of the base wrench (k x 3), within +-wheel_bound_
+  double wheel_bound_ = 0.0;
+  Vector acceleration_lower_;
+  Vector acceleration_upper_;
+  Vector lower_;  // accelerations, torques, wheel rows (2 n + k)
+  Vector upper_;
+  Vector first_;
+  Vector command_;
+};
+
+}  // namespace tope
