@@ -10,10 +10,10 @@
 namespace tope {
 
 struct JointLimitOptions {
-  double buffer = 0.1;                    ///< beta: width of the zone inside each limit [rad or m]
-  std::map<std::string, double> buffers;  ///< joints with a buffer of their own
-  double gain = 10.0;                     ///< lambda: speed allowed or asked for per distance [1/s]
-  Ramp ramp = Ramp::raised_cosine;        ///< how activations rise across the buffer
+  double buffer = 0.1;                      ///< beta: width of the zone inside each limit [rad or m]
+  std::map<std::string, double> buffers{};  ///< joints with a buffer of their own
+  double gain = 10.0;                       ///< lambda: speed allowed or asked for per distance [1/s]
+  Ramp ramp = Ramp::raised_cosine;          ///< how activations rise across the buffer
   double margin = 1e-3;  ///< m: distance kept from the limit by the unilateral law [rad or m]
 };
 
@@ -47,7 +47,7 @@ class JointLimits {
 
   /// How far motion v (n) engages each bound of the unilateral law: ramp(1 - slack / (gain beta)), 1 where it
   /// presses.
-  void engagement(const Vector& v, Eigen::Ref<Vector> upper, Eigen::Ref<Vector> lower) const;
+  void engagement(const VectorArg& v, Eigen::Ref<Vector> upper, Eigen::Ref<Vector> lower) const;
   /// Activation by side: that of the row, on the side where the joint is.
   void activation_by_side(Eigen::Ref<Vector> upper, Eigen::Ref<Vector> lower) const;
 
