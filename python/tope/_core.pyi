@@ -7,6 +7,7 @@ from typing import Annotated
 import numpy
 from numpy.typing import NDArray
 
+
 class Error(RuntimeError):
     pass
 
@@ -22,44 +23,44 @@ class Robot:
 
     @property
     def name(self) -> str: ...
+
     @property
     def nq(self) -> int: ...
+
     @property
     def nv(self) -> int: ...
+
     @property
     def joint_names(self) -> list[str]: ...
+
     @property
     def position_lower(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,))]:
         """Lower position limits (nv) [rad or m]."""
 
     @position_lower.setter
-    def position_lower(
-        self, arg: Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C")], /
-    ) -> None: ...
+    def position_lower(self, arg: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], /) -> None: ...
+
     @property
     def position_upper(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,))]:
         """Upper position limits (nv) [rad or m]."""
 
     @position_upper.setter
-    def position_upper(
-        self, arg: Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C")], /
-    ) -> None: ...
+    def position_upper(self, arg: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], /) -> None: ...
+
     @property
     def velocity_limit(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,))]:
         """Speed bounds (nv) [rad/s or m/s]."""
 
     @velocity_limit.setter
-    def velocity_limit(
-        self, arg: Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C")], /
-    ) -> None: ...
+    def velocity_limit(self, arg: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], /) -> None: ...
+
     @property
     def effort_limit(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,))]:
         """Torque or force bounds (nv) [Nm or N]."""
 
     @effort_limit.setter
-    def effort_limit(
-        self, arg: Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C")], /
-    ) -> None: ...
+    def effort_limit(self, arg: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], /) -> None: ...
+
     def __repr__(self) -> str: ...
 
 class Exponential:
@@ -87,9 +88,7 @@ def FrameOrientation(*, frame: str, target: object, reference: Exponential | Pre
     Turns a frame as a 3 x 3 matrix or a quaternion (w, x, y, z) says, or as a function t -> (rotation, angular velocity) turns.
     """
 
-def FramePose(
-    *, frame: str, position: object, rotation: object, reference: Exponential | PredefinedTime = ...
-) -> Task:
+def FramePose(*, frame: str, position: object, rotation: object, reference: Exponential | PredefinedTime = ...) -> Task:
     """Position and orientation of a frame as one task of six rows."""
 
 def Posture(*, target: object, reference: Exponential | PredefinedTime = ...) -> Task:
@@ -104,51 +103,33 @@ def Damping() -> Task:
 class UnilateralOptions:
     """Parameters of the method `unilateral`."""
 
-    def __init__(
-        self,
-        *,
-        damping: float = 0.05,
-        fine_damping: float = 0.02,
-        fine_below: float = 0.05,
-        lock: float = 0.1,
-        headroom: float = 0.01,
-    ) -> None: ...
+    def __init__(self, *, damping: float = 0.05, fine_damping: float = 0.02, fine_below: float = 0.05, lock: float = 0.1, headroom: float = 0.01) -> None: ...
 
 class PotentialFieldOptions:
     """Parameters of the method `potential_field`."""
 
-    def __init__(
-        self, *, joints: Sequence[str] = [], influence: float = 0.1, strength: float = 0.05
-    ) -> None: ...
+    def __init__(self, *, joints: Sequence[str] = [], influence: float = 0.1, strength: float = 0.05) -> None: ...
 
 class LimitOptions:
     """How joint limits are met."""
 
-    def __init__(
-        self,
-        *,
-        method: str = "unilateral",
-        buffer: float = 0.1,
-        gain: float = 10.0,
-        margin: float = 0.001,
-        ramp: str = "raised_cosine",
-        buffers: Mapping[str, float] = {},
-        unilateral: UnilateralOptions = ...,
-        potential_field: PotentialFieldOptions = ...,
-        enforce_conditions: bool = True,
-    ) -> None: ...
+    def __init__(self, *, method: str = 'unilateral', buffer: float = 0.1, gain: float = 10.0, margin: float = 0.001, ramp: str = 'raised_cosine', buffers: Mapping[str, float] = {}, unilateral: UnilateralOptions = ..., potential_field: PotentialFieldOptions = ..., enforce_conditions: bool = True) -> None: ...
 
 class Status:
     """What acted in one cycle."""
 
     @property
     def ok(self) -> bool: ...
+
     @property
     def events(self) -> list[str]: ...
+
     @property
     def scale(self) -> float: ...
+
     @property
     def laws(self) -> int: ...
+
     def __str__(self) -> str: ...
 
 class TaskHandle:
@@ -157,15 +138,7 @@ class TaskHandle:
 class Controller:
     """Serves tasks in strict order of priority and keeps joint limits."""
 
-    def __init__(
-        self,
-        robot: Robot,
-        *,
-        mode: str,
-        dt: float,
-        limits: LimitOptions = ...,
-        joint_weights: Sequence[float] = [],
-    ) -> None:
+    def __init__(self, robot: Robot, *, mode: str, dt: float, limits: LimitOptions = ..., joint_weights: Sequence[float] = []) -> None:
         """Takes a copy of the robot with its bounds as they are."""
 
     def add(self, task: Task, *, level: int, over: float = 0.0) -> TaskHandle:
@@ -174,21 +147,18 @@ class Controller:
     def remove(self, handle: TaskHandle, *, over: float = 0.0) -> None:
         """Removes a task; `over` seconds let it fade out."""
 
-    def update(
-        self,
-        q: Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C")],
-        v: Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C")],
-        t: float,
-    ) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C")]:
+    def update(self, q: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], v: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], t: float) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]:
         """One cycle: the command (nv) at state q (nq), v (nv) and time t [s]."""
 
-    def error(self, handle: TaskHandle) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C")]:
+    def error(self, handle: TaskHandle) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]:
         """Error of a task as of the last update."""
 
     @property
     def status(self) -> Status: ...
+
     @property
     def status_text(self) -> str: ...
+
     @property
     def activations(self) -> dict[str, float]:
         """How active each limit is, 0 to 1, by 'joint.side'."""
@@ -199,14 +169,12 @@ class Scenario:
     """A complete experiment as a YAML file tells it."""
 
     def describe(self) -> dict: ...
+
     @property
-    def initial(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C")]: ...
+    def initial(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]: ...
 
 def load_scenario(path: str | os.PathLike, overrides: Mapping[str, str] = {}) -> Scenario: ...
-def simulate(
-    scenario: Scenario,
-    out: str | os.PathLike | None = None,
-    progress: Callable[[float], None] | None = None,
-    keep_log: bool = True,
-) -> dict: ...
+
+def simulate(scenario: Scenario, out: str | os.PathLike | None = None, progress: Callable[[float], None] | None = None, keep_log: bool = True) -> dict: ...
+
 def check(scenario: Scenario) -> list: ...
