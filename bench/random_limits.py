@@ -1,7 +1,8 @@
 """Run: make campaign-limits.
 
-A thousand random runs per method with the safety inequalities of `tope check` kept, some of them barely: random
-start, goal (half of them out of reach), task gains, period, buffers and limit gains. Counts crossed limits.
+A thousand random runs per method with the safety inequalities of `tope check` kept, some of them barely:
+random start, goal (half of them out of reach), task gains, period, buffers and limit gains. Counts crossed
+limits.
 """
 
 import argparse
