@@ -120,7 +120,7 @@ def table(outcomes: list[Outcome], method: str) -> Table:
 
 def main() -> None:
     """Run the campaign."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--method", default="unilateral", choices=tope.LIMIT_METHODS)
     parser.add_argument("--count", type=int, default=200, help="goals, of 200")
     parser.add_argument("--json", type=Path, help="also write every outcome there")

@@ -1,7 +1,8 @@
 """Run: make campaign-limits.
 
-A thousand random runs per method with the safety inequalities of `tope check` kept, some of them barely: random
-start, goal (half of them out of reach), task gains, period, buffers and limit gains. Counts crossed limits.
+A thousand random runs per method with the safety inequalities of `tope check` kept, some of them barely:
+random start, goal (half of them out of reach), task gains, period, buffers and limit gains. Counts crossed
+limits.
 """
 
 import argparse
@@ -79,11 +80,15 @@ def run(seed: int, method: str) -> Outcome:
 
 def main() -> None:
     """Run the campaign."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--count", type=int, default=1000, help="runs per method")
     parser.add_argument("--seed", type=int, default=1, help="of the first run; run i has seed + i")
     arguments = parser.parse_args()
-    table = Table("method", "runs", "entered a buffer", "crossed a limit", "least distance kept", "cycles cut off")
+    table = Table(
+        "method", "runs", "entered a buffer", "crossed a limit", "least distance kept", "cycles cut off"
+    )
     crossed = 0
     with ProcessPoolExecutor() as pool:
         for method in METHODS:

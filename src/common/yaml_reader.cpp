@@ -115,10 +115,24 @@ YAML::Node YamlReader::find(const std::string& key) const {
 
 YAML::Node YamlReader::require(const std::string& key) const {
   YAML::Node node = find(key);
+  if (!node.IsDefined()) {
+    refuse_misspelling(key);
+  }
   if (!node.IsDefined() || node.IsNull()) {
     fail(key, "is missing");
   }
   return node;
+}
+
+/// A needed key that is missing may stand there misspelled: then that is what to tell.
+void YamlReader::refuse_misspelling(const std::string& key) const {
+  for (const auto& entry : node_) {
+    const std::string given = entry.first.Scalar();
+    const bool known = std::find(known_->begin(), known_->end(), given) != known_->end();
+    if (key.size() > 1 && !known && !nearest_name(given, {&key, 1}).empty()) {
+      throw ConfigError(where(full_key(given), entry.first) + ": unknown key; did you mean '" + key + "'?");
+    }
+  }
 }
 
 bool YamlReader::has(const std::string& key) const { return find(key).IsDefined(); }

@@ -62,6 +62,7 @@ class YamlReader {
   YamlReader(const YAML::Node& node, std::string prefix, std::shared_ptr<const Source> source);
 
   YAML::Node require(const std::string& key) const;
+  void refuse_misspelling(const std::string& key) const;
   YAML::Node find(const std::string& key) const;
   std::string where(const std::string& path, const YAML::Node& node) const;
   std::string full_key(const std::string& key) const;

@@ -155,11 +155,13 @@ void JointLimits::blended_speed_bounds(const Vector& activation, Vector& lower, 
   upper = velocity_limit_;
   for (int j = 0; j < size(); ++j) {
     Vector& near = side_[j] > 0.0 ? upper : lower;
-    near[j] += activation[j] * (target_[j] - near[j]);
+    const double xi = activation[j];
+    near[j] = xi < 1.0 ? (1.0 - xi) * near[j] + xi * target_[j] : target_[j];  // v_max may be infinite
   }
 }
 
-void JointLimits::engagement(const Vector& motion, Eigen::Ref<Vector> upper, Eigen::Ref<Vector> lower) const {
+void JointLimits::engagement(const VectorArg& motion, Eigen::Ref<Vector> upper,
+                             Eigen::Ref<Vector> lower) const {
   for (int j = 0; j < size(); ++j) {
     // a bound that only the speed limit sets is none of a position limit's
     const double scale = engagement_scale_ * buffer_[j];

@@ -19,6 +19,6 @@ double ramp(Ramp shape, double x) {
 }
 
 // Maxima of (1 - ramp(1 - x)) / x, rounded up; the test of this file recomputes them.
-double ramp_slope_factor(Ramp shape) { return shape == Ramp::quintic ? 1.1988 : 1.1383; }
+double ramp_slope_factor(Ramp shape) { return shape == Ramp::quintic ? 1.1978 : 1.1383; }
 
 }  // namespace tope

@@ -6,7 +6,7 @@
 namespace tope {
 
 MecanumBase::MecanumBase(const MecanumBaseOptions& options) : options_(options) {
-  if (options.wheel_radius <= 0.0 || options.half_wheelbase <= 0.0 || options.half_track <= 0.0) {
+  if (!(options.wheel_radius > 0.0 && options.half_wheelbase > 0.0 && options.half_track > 0.0)) {
     throw ConfigError("mecanum base: wheel_radius, half_wheelbase and half_track must be positive [m]");
   }
   const double k = options.half_wheelbase + options.half_track;

@@ -1,5 +1,6 @@
-// BoundedLeastSquares: optimality conditions and eiquadprog on random, degenerate and dependent problems of 1
-// to 40 unknowns, its multipliers, and what it does when no point satisfies the bounds.
+// BoundedLeastSquares: optimality conditions and eiquadprog on random, degenerate and dependent problems of
+// 1 to 40 unknowns, its multipliers, and what it does when no point satisfies the bounds. Not here: how
+// many iterations it takes.
 #include "support/kkt.hpp"
 #include "support/random.hpp"
 #include "support/reference_unilateral.hpp"

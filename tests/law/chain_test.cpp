@@ -1,6 +1,6 @@
 // Chain: the Lovasz extension by its integral form, vertices, one transition, exactness and priority with
 // transitions under way, continuity across ties, and the number of laws. Over Hierarchy and, for task
-// changes, over Unilateral.
+// changes, over Unilateral. Not here: its inputs, the activations by state (limit room).
 #include "support/path.hpp"
 #include "support/random_stack.hpp"
 

@@ -1,4 +1,5 @@
-// CommandBounds against bisection for the largest scale, clipping, rounding and infinite bounds.
+// CommandBounds against bisection for the largest scale, clipping, rounding and infinite bounds. Not here:
+// where the bounds come from (limit room).
 #include "support/random.hpp"
 
 #include <tope/law/command_bounds.hpp>

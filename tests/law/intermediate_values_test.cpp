@@ -1,5 +1,6 @@
 // IntermediateValues: equal to the convex combination for one transition, the paper's values by a dense
-// reference, and the jump of the literal form when a row appears, which is why it is no default.
+// reference, and the jump of the literal form when a row appears, which is why it is no default. Not here:
+// its behaviour in closed loop.
 #include "support/random_stack.hpp"
 #include "support/reference_hierarchy.hpp"
 

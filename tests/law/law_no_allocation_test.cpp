@@ -1,5 +1,5 @@
 // No law touches the heap once it is built: every method, up to 40 unknowns, with transitions and deficient
-// ranks. Also the guard itself.
+// ranks. Also the guard itself. Not here: the robot around the law (controller room).
 #include "support/no_allocation.hpp"
 #include "support/path.hpp"
 #include "support/random_stack.hpp"
@@ -73,7 +73,7 @@ BOOST_AUTO_TEST_CASE(no_method_allocates) {
                                                   .limit_transitions = seed % 3,
                                                   .task_transitions = seed % 2,
                                                   .beyond = true});
-        Law law(stack, {.method = limit_method_from(name), .hierarchy = {}, .unilateral = {}});
+        Law law(stack, {.method = limit_method_from(name)});
         Solution solution(n);
         {
           const NoAllocation guard(name);
@@ -90,7 +90,7 @@ BOOST_AUTO_TEST_CASE(no_method_allocates_at_a_singularity) {
   const StackPath path(random, 7, true);
   for (const std::string& name : limit_method_names()) {
     BOOST_TEST_CONTEXT(name) {
-      Law law(path.at(0.0), {.method = limit_method_from(name), .hierarchy = {}, .unilateral = {}});
+      Law law(path.at(0.0), {.method = limit_method_from(name)});
       Solution solution(7);
       for (const double s : {0.3, 0.5, 0.7}) {
         Stack stack = path.at(s);

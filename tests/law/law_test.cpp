@@ -1,4 +1,5 @@
-// Law: which phi over which activations each limit method takes; the methods' names; small numerical helpers.
+// Law: which phi over which activations each limit method takes; the methods' names; small numerical
+// helpers. Not here: what each law computes; they have files of their own.
 #include "support/random_stack.hpp"
 #include "support/text.hpp"
 
@@ -11,7 +12,7 @@ namespace tope::test {
 namespace {
 
 Vector solve(const Stack& stack, LimitMethod method) {
-  Law law(stack, {.method = method, .hierarchy = {}, .unilateral = {}});
+  Law law(stack, {.method = method});
   Solution solution(stack.size());
   law.solve(stack, solution);
   return solution.y;

@@ -1,5 +1,5 @@
-// Multilinear: its recursive form, one transition as the chain's, and what it does beyond its largest number
-// of transitions.
+// Multilinear: its recursive form, one transition as the chain's, and what it does beyond its largest
+// number of transitions. Not here: continuity, which the chain shares.
 #include "support/random_stack.hpp"
 
 #include <tope/law/chain.hpp>

@@ -1,4 +1,5 @@
 // SymmetricEigen against Eigen's own decomposition, for regular and deficient matrices and for clusters.
+// Not here: the heap (law_no_allocation_test).
 #include "support/random.hpp"
 
 #include <tope/law/symmetric_eigen.hpp>

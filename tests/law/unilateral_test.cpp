@@ -26,7 +26,8 @@ Solution solve(const Stack& stack, const Unilateral::Options& options = defaults
   return solution;
 }
 
-/// Calls `check` with random stacks, deficient ranks and states beyond a limit among them.
+/// Calls `check` with random stacks; deficient ranks, directions that are nearly lost and states beyond a
+/// limit are among them.
 template <typename Check>
 void on_random_stacks(int seeds, Check check) {
   for (int seed = 0; seed < seeds; ++seed) {
@@ -36,6 +37,7 @@ void on_random_stacks(int seeds, Check check) {
       options.n = random.integer(3, 40);
       options.levels = random.integer(1, 4);
       options.beyond = random.chance(0.3);
+      options.weak = 0.2;
       check(random_stack(random, options));
     }
   }

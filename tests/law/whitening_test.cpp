@@ -1,4 +1,5 @@
-// Whitening of the velocity mode: (10), the weighted pseudo-inverse, becomes the ordinary one.
+// Whitening of the velocity mode: (10), the weighted pseudo-inverse, becomes the ordinary one. Not here:
+// torque mode.
 #include "support/random.hpp"
 #include "support/text.hpp"
 

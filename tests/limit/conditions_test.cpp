@@ -1,5 +1,6 @@
-// The sampled-time inequalities: which methods ask for which, their numbers and advice; and that a joint driven at full
-// speed stays inside at the longest period they allow.
+// The sampled-time inequalities: which methods ask for which, their numbers and advice; and that a joint
+// driven at full speed stays inside at the longest period they allow. Not here: that a controller enforces
+// them (controller room).
 #include "support/robots.hpp"
 
 #include <tope/limit/conditions.hpp>
@@ -44,7 +45,7 @@ BOOST_AUTO_TEST_CASE(defaults_are_safe_at_a_kilohertz) {
 }
 
 BOOST_AUTO_TEST_CASE(servo_must_be_stable) {
-  const auto list = conditions({.buffers = {}, .gain = 10.0}, LimitMethod::chain, 0.2);
+  const auto list = conditions({.gain = 10.0}, LimitMethod::chain, 0.2);
   const Condition* servo = find(list, "servo", "");
   BOOST_REQUIRE(servo != nullptr);
   BOOST_TEST(!servo->holds());
@@ -57,7 +58,7 @@ BOOST_AUTO_TEST_CASE(servo_must_be_stable) {
 BOOST_AUTO_TEST_CASE(buffers_must_be_wide) {
   const double v_max = youbot().velocity_limit()[kJoint];
   for (const Ramp shape : {Ramp::raised_cosine, Ramp::quintic}) {
-    const auto list = conditions({.buffers = {}, .gain = 1.0, .ramp = shape}, LimitMethod::chain, 0.06);
+    const auto list = conditions({.gain = 1.0, .ramp = shape}, LimitMethod::chain, 0.06);
     const Condition* buffer = find(list, "buffer", "arm_joint_2");
     BOOST_REQUIRE(buffer != nullptr);
     BOOST_TEST(buffer->value == ramp_slope_factor(shape) * 0.06 * v_max, boost::test_tools::tolerance(1e-12));
@@ -80,12 +81,13 @@ BOOST_AUTO_TEST_CASE(unilateral_needs_its_headroom_inside_the_bounds) {
 }
 
 BOOST_AUTO_TEST_CASE(rows_keep_a_joint_inside_at_the_longest_period) {
-  // the blended row against a task that drives the joint outwards at full speed, from every place in the buffer
+  // the blended row against a task that drives the joint outwards at full speed, from every place in the
+  // buffer
   Robot robot = youbot();
   const double v_max = robot.velocity_limit()[kJoint];
   const double upper = robot.position_upper()[kJoint];
   for (const Ramp shape : {Ramp::raised_cosine, Ramp::quintic}) {
-    const JointLimitOptions options{.buffers = {}, .gain = 2.0, .ramp = shape};
+    const JointLimitOptions options{.gain = 2.0, .ramp = shape};
     JointLimits limits(robot, options);
     const auto reach = [&](double dt) {
       double furthest = -INFINITY;
@@ -108,7 +110,7 @@ BOOST_AUTO_TEST_CASE(rows_keep_a_joint_inside_at_the_longest_period) {
 BOOST_AUTO_TEST_CASE(bounds_keep_a_joint_inside_at_the_longest_period) {
   Robot robot = youbot();
   const double upper = robot.position_upper()[kJoint];
-  const JointLimitOptions options{.buffers = {}, .gain = 10.0};
+  const JointLimitOptions options{.gain = 10.0};
   JointLimits limits(robot, options);
   Vector q = Vector::Zero(8);
   for (int i = 0; i <= 2000; ++i) {

@@ -1,5 +1,6 @@
-// JointLimits: rows, activations and bounds at the buffer's edge, at the limit, beyond it and without one; engagement;
-// bad options. Ramps and their slope factor. That rows and bounds keep a joint inside, sampled at the longest period.
+// JointLimits: rows, activations and bounds at the buffer's edge, at the limit, beyond it and without one;
+// engagement; bad options. Ramps and their slope factor. Not here: that they keep a joint inside over time
+// (conditions_test, controller room).
 #include "support/robots.hpp"
 #include "support/text.hpp"
 
@@ -156,6 +157,38 @@ BOOST_AUTO_TEST_CASE(engagement_is_one_on_the_bound_and_fades_with_slack) {
   BOOST_TEST(up[kYaw] == 0.0);
 }
 
+BOOST_AUTO_TEST_CASE(blended_bounds_shrink_towards_the_near_limit) {
+  Vector low(8);
+  Vector high(8);
+  move(upper - 0.05);
+  limits.blended_speed_bounds(limits.activation(), low, high);
+  BOOST_TEST(near(high[kJoint], 0.5 * v_max + 0.5 * limits.target()[kJoint]));
+  BOOST_TEST(low[kJoint] == -v_max);
+  BOOST_TEST(high[0] == robot.velocity_limit()[0]);
+  move(lower);
+  limits.blended_speed_bounds(limits.activation(), low, high);
+  BOOST_TEST(near(low[kJoint], limits.target()[kJoint]));
+  BOOST_TEST(high[kJoint] == v_max);
+  limits.blended_speed_bounds(Vector::Zero(8), low, high);
+  BOOST_TEST(low[kJoint] == -v_max);
+}
+
+BOOST_AUTO_TEST_CASE(blended_bounds_of_unbounded_speeds_are_infinite) {
+  robot.set_velocity_limit(Vector::Constant(8, INFINITY));
+  JointLimits unbounded(robot, options);
+  Vector q = Vector::Zero(8);
+  q[kJoint] = upper - 0.05;
+  q[7] = robot.position_upper()[7];
+  unbounded.update(q);
+  Vector low(8);
+  Vector high(8);
+  unbounded.blended_speed_bounds(unbounded.activation(), low, high);
+  BOOST_TEST(high[kYaw] == INFINITY);
+  BOOST_TEST(low[kYaw] == -INFINITY);
+  BOOST_TEST(high[kJoint] == INFINITY);
+  BOOST_TEST(high[7] == unbounded.target()[7]);
+}
+
 BOOST_AUTO_TEST_CASE(activation_by_side_is_on_the_near_side) {
   Vector up(8);
   Vector down(8);
@@ -188,15 +221,15 @@ BOOST_AUTO_TEST_CASE(bad_options_are_refused) {
   const auto refuse = [&](JointLimitOptions bad, std::initializer_list<std::string> parts) {
     check_error([&] { const JointLimits built(robot, bad); }, parts);
   };
-  refuse({.buffer = -0.1, .buffers = {}}, {"limits: buffer", "positive", "-0.1"});
-  refuse({.buffers = {}, .gain = -2.0}, {"limits: gain", "positive", "-2"});
-  refuse({.buffers = {}, .gain = NAN}, {"limits: gain", "finite"});
-  refuse({.buffers = {}, .margin = 0.0}, {"limits: margin", "positive"});
+  refuse({.buffer = -0.1}, {"limits: buffer", "positive", "-0.1"});
+  refuse({.gain = -2.0}, {"limits: gain", "positive", "-2"});
+  refuse({.gain = NAN}, {"limits: gain", "finite"});
+  refuse({.margin = 0.0}, {"limits: margin", "positive"});
   refuse({.buffers = {{"arm_joint_2", 0.0}}}, {"buffer of arm_joint_2", "positive"});
   refuse({.buffers = {{"arm_joint_8", 0.1}}}, {"unknown joint 'arm_joint_8'", "did you mean"});
   refuse({.buffers = {{"arm_joint_2", 1.4}}},
          {"buffers of arm_joint_2 overlap", "2.67", "2.8", "below 1.33"});
-  refuse({.buffer = 1.4, .buffers = {}}, {"overlap"});
+  refuse({.buffer = 1.4}, {"overlap"});
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -1,4 +1,5 @@
 // PotentialField: minus the gradient of its potential by finite differences, its range, and bad options.
+// Not here: the level that the field gets (controller room).
 #include "support/robots.hpp"
 #include "support/text.hpp"
 
@@ -33,7 +34,7 @@ BOOST_AUTO_TEST_SUITE(potential_field)
 
 BOOST_AUTO_TEST_CASE(is_minus_the_gradient_of_its_potential) {
   const Robot robot = youbot();
-  PotentialField field(robot, {.joints = {}, .influence = kInfluence, .strength = kStrength});
+  PotentialField field(robot, {.influence = kInfluence, .strength = kStrength});
   double largest = 0.0;
   for (int seed = 0; seed < 50; ++seed) {
     BOOST_TEST_CONTEXT("seed " << seed) {
@@ -84,10 +85,8 @@ BOOST_AUTO_TEST_CASE(bad_options_are_refused) {
   check_error([&] { PotentialField(robot, {.joints = {"arm_joint_7"}}); }, {"unknown joint 'arm_joint_7'"});
   check_error([&] { PotentialField(robot, {.joints = {"base_yaw"}}); },
               {"potential_field", "base_yaw", "no limit"});
-  check_error([&] { PotentialField(robot, {.joints = {}, .influence = -0.1}); },
-              {"potential_field", "positive", "-0.1"});
-  check_error([&] { PotentialField(robot, {.joints = {}, .strength = NAN}); },
-              {"potential_field", "positive"});
+  check_error([&] { PotentialField(robot, {.influence = -0.1}); }, {"potential_field", "positive", "-0.1"});
+  check_error([&] { PotentialField(robot, {.strength = NAN}); }, {"potential_field", "positive"});
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -1,5 +1,6 @@
-// References against the analytic solution of the error they promise, continuity at both ends, and bad gains. Moving
-// targets: velocities against finite differences.
+// References against the analytic solution of the error they promise, continuity at both ends, and bad
+// gains. Moving targets: velocities against finite differences. Not here: the tasks that use them (task
+// room).
 #include "support/random.hpp"
 #include "support/text.hpp"
 

@@ -1,4 +1,5 @@
 // MecanumBase: (2)-(3) of the paper by their numbers, round trips between base and wheels, what rotors add.
+// Not here: torques of single wheels.
 #include "support/random.hpp"
 #include "support/text.hpp"
 
@@ -86,7 +87,7 @@ BOOST_AUTO_TEST_CASE(bad_geometry_is_refused) {
   for (double MecanumBaseOptions::* member :
        {&MecanumBaseOptions::wheel_radius, &MecanumBaseOptions::half_wheelbase,
         &MecanumBaseOptions::half_track}) {
-    for (const double bad : {0.0, -0.1, NAN}) {
+    for (const double bad : {0.0, -0.1, std::nan("")}) {
       MecanumBaseOptions options = youbot_base;
       options.*member = bad;
       check_error([&] { const MecanumBase base(options); }, {"mecanum base", "positive"});

@@ -1,5 +1,6 @@
-// Robot: names, units, bounds, locked and continuous joints, and every way a URDF, a robot's YAML file or a bound is
-// refused. RobotTerms: placements and Jacobians against finite differences.
+// Robot: names, units, bounds, locked and continuous joints, and every way a URDF, a robot's YAML file or a
+// bound is refused. RobotTerms: placements and Jacobians against finite differences. Not here: the youBot's
+// own numbers, which its model test compares with their sources.
 #include "support/robots.hpp"
 #include "support/text.hpp"
 

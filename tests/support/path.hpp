@@ -9,13 +9,14 @@
 
 namespace tope::test {
 
-/// Follows the fifty of `steps` equal steps from 0 to 1 on which f changes most, and repeats: cut in ten, go on with
-/// the part that changes most. Largest change of a component at first and after each round: it falls tenfold a round
-/// where f is continuous, once the steps are short beside f's kinks, and stays where f jumps.
+/// Follows the fifty of `steps` equal steps from 0 to 1 on which f changes most, and repeats: cut in ten,
+/// go on with the part that changes most. Largest change of a component at first and after each round: it
+/// falls tenfold a round where f is continuous, once the steps are short beside f's kinks, and stays where
+/// f jumps.
 std::vector<double> zoomed_changes(const std::function<Vector(double)>& f, int steps, int rounds);
 
-/// Checks that f is continuous on [0, 1]: from steps of 1e-8 to steps of 1e-9 the largest change falls about tenfold,
-/// and what is left of the largest change is next to nothing.
+/// Checks that f is continuous on [0, 1]: from steps of 1e-8 to steps of 1e-9 the largest change falls
+/// about tenfold, and what is left of the largest change is next to nothing.
 void check_continuity(const std::function<Vector(double)>& f);
 
 /// A random smooth path s -> stack, s in [0, 1], of constant shape. Activations run through 0, 1 and ties. On

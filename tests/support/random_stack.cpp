@@ -12,9 +12,12 @@ TaskRows random_task(Random& random, const RandomStackOptions& options, int leve
   const int rows = random.integer(1, std::max(1, std::min(6, options.n / 2)));
   const int full = std::min(rows, options.n);
   const int rank = random.chance(options.deficient) ? random.integer(1, full) : full;
+  const bool weak = random.chance(options.weak);
+  const double low = weak ? 0.005 : 0.5;
+  const double high = weak ? 0.2 : 2.0;
   TaskRows task{.level = level,
                 .activation = 1.0,
-                .a = random.matrix_of_rank(rows, options.n, rank, 0.5, 2.0),
+                .a = random.matrix_of_rank(rows, options.n, rank, low, high),
                 .b = random.vector(rows)};
   if (!above.empty() && random.chance(options.deficient)) {
     const TaskRows& other =

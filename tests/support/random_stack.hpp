@@ -13,6 +13,7 @@ struct RandomStackOptions {
   int task_transitions = 0;
   double complete_limits = 0.2;  ///< share of the other limit rows that are active
   double deficient = 0.3;  ///< share of tasks of deficient rank, and of tasks that repeat rows of others
+  double weak = 0.0;       ///< share of tasks with singular values down to nearly zero
   bool beyond = false;     ///< some motion bounds exclude zero
 };
 

@@ -1,4 +1,5 @@
-// rotation_vector and inverse_right_jacobian at the identity, for tiny, random and nearly half turns.
+// rotation_vector and inverse_right_jacobian at the identity, for tiny, random and nearly half turns. Not
+// here: the tasks built on them (task_test).
 #include "support/random.hpp"
 
 #include <tope/task/rotation_error.hpp>

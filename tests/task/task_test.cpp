@@ -1,5 +1,5 @@
-// Every task's Jacobian and feedforward against central finite differences along random motions, with fixed and moving
-// targets; what tasks refuse. Not here: the rotation error itself (rotation_error_test).
+// Every task's Jacobian and feedforward against central finite differences along random motions, with fixed
+// and moving targets; what tasks refuse. Not here: the rotation error itself (rotation_error_test).
 #include "support/robots.hpp"
 #include "support/text.hpp"
 

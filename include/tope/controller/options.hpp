@@ -23,22 +23,22 @@ enum class NullSpace {
 
 struct LimitOptions {
   LimitMethod method = LimitMethod::unilateral;
-  JointLimitOptions rows;                 ///< buffers, gain, ramp, margin
-  Unilateral::Options unilateral;         ///< used by the method of that name
-  PotentialFieldOptions potential_field;  ///< used by the method of that name
-  bool enforce_conditions = true;         ///< false: build the controller although a safety inequality fails
+  JointLimitOptions rows{};                 ///< buffers, gain, ramp, margin
+  Unilateral::Options unilateral{};         ///< used by the method of that name
+  PotentialFieldOptions potential_field{};  ///< used by the method of that name
+  bool enforce_conditions = true;  ///< false: build the controller although a safety inequality fails
 };
 
 struct ControllerOptions {
   Mode mode = Mode::velocity;
   double dt = 1e-3;  ///< period of the loop [s]
-  LimitOptions limits;
-  Hierarchy::Options singularities;                                        ///< of every method but unilateral
+  LimitOptions limits{};
+  Hierarchy::Options singularities{};                                      ///< of every method but unilateral
   NullSpace null_space = NullSpace::compensated;                           ///< torque mode
   WheelDistribution wheel_distribution = WheelDistribution::minimum_norm;  ///< torque mode
-  /// Velocity mode: cost of each joint's motion (nv), positive: the law minimises sum weight_j v_j^2 where tasks leave a
-  /// choice. Empty: all ones.
-  std::vector<double> joint_weights;
+  /// Velocity mode: cost of each joint's motion (nv), positive: the law minimises sum weight_j v_j^2 where tasks
+  /// leave a choice. Empty: all ones.
+  std::vector<double> joint_weights{};
 };
 
 }  // namespace tope

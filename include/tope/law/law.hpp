@@ -13,8 +13,8 @@ namespace tope {
 
 struct LawOptions {
   LimitMethod method = LimitMethod::unilateral;
-  Hierarchy::Options hierarchy;
-  Unilateral::Options unilateral;
+  Hierarchy::Options hierarchy{};
+  Unilateral::Options unilateral{};
 };
 
 /// The complete law of one limit method: which phi(S), over which activations, blended how.

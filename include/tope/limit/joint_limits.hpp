@@ -17,10 +17,10 @@ enum class Measure {
 };
 
 struct JointLimitOptions {
-  double buffer = 0.1;                    ///< beta: width of the zone inside each limit [rad or m]
-  std::map<std::string, double> buffers;  ///< joints with a buffer of their own
-  double gain = 10.0;                     ///< lambda: speed allowed or asked for per distance [1/s]
-  Ramp ramp = Ramp::raised_cosine;        ///< how activations rise across the buffer
+  double buffer = 0.1;                      ///< beta: width of the zone inside each limit [rad or m]
+  std::map<std::string, double> buffers{};  ///< joints with a buffer of their own
+  double gain = 10.0;                       ///< lambda: speed allowed or asked for per distance [1/s]
+  Ramp ramp = Ramp::raised_cosine;          ///< how activations rise across the buffer
   double servo_gain = 20.0;  ///< gamma_2: how fast speed returns below the envelope, torque mode [1/s]
   Measure measure = Measure::predicted;  ///< of the activations in torque mode
   double margin = 1e-3;                  ///< m: distance kept from the limit by the unilateral law [rad or m]
@@ -70,7 +70,7 @@ class JointLimits {
 
   /// How far a motion (n) engages each bound of the unilateral law: ramp(1 - slack / (gain beta)), in torque mode
   /// ramp(1 - slack / (gain servo_gain beta)); 1 where it presses.
-  void engagement(const Vector& motion, Eigen::Ref<Vector> upper, Eigen::Ref<Vector> lower) const;
+  void engagement(const VectorArg& motion, Eigen::Ref<Vector> upper, Eigen::Ref<Vector> lower) const;
   /// Activation by side: that of the row, on the side where the joint is.
   void activation_by_side(Eigen::Ref<Vector> upper, Eigen::Ref<Vector> lower) const;
 

@@ -9,9 +9,9 @@
 namespace tope {
 
 struct PotentialFieldOptions {
-  std::vector<std::string> joints;  ///< joints whose limits repel; empty: all that have limits
-  double influence = 0.1;           ///< distance from the limit where the field begins [rad or m]
-  double strength = 0.05;           ///< speed scale k of the field [rad/s or m/s]
+  std::vector<std::string> joints{};  ///< joints whose limits repel; empty: all that have limits
+  double influence = 0.1;             ///< distance from the limit where the field begins [rad or m]
+  double strength = 0.05;             ///< speed scale k of the field [rad/s or m/s]
 };
 
 /// Repulsive field of joint limits (Khatib 1986): with s = distance / influence, the descent of its potential

@@ -35,8 +35,8 @@ class Metrics {
  public:
   struct TaskInfo {
     std::string name;
-    bool goal = true;                 ///< counts for time_to_goal
-    std::optional<double> goal_time;  ///< [s]
+    bool goal = true;                   ///< counts for time_to_goal
+    std::optional<double> goal_time{};  ///< [s]
   };
 
   Metrics(Vector lower, Vector upper, Vector buffer, Vector bound, std::vector<TaskInfo> tasks, int cycles,

@@ -13,9 +13,9 @@
 namespace tope {
 
 struct SimulationOptions {
-  std::filesystem::path log_file;           ///< empty: none
-  bool keep_log = false;                    ///< keep the rows in memory
-  std::function<void(double)> on_progress;  ///< called now and then with the share done, 0 to 1; may throw
+  std::filesystem::path log_file{};           ///< empty: none
+  bool keep_log = false;                      ///< keep the rows in memory
+  std::function<void(double)> on_progress{};  ///< called now and then with the share done, 0 to 1; may throw
 };
 
 /// The closed loop of a scenario: controller, plant, log and metrics.

@@ -1,0 +1,195 @@
+// Scenario files: what they set, every way they are refused (file, line, key and suggestion in the
+// message), overrides, and that the shipped ones load. Not here: what a run of them does (simulation_test).
+#include "support/robots.hpp"
+#include "support/text.hpp"
+
+#include <tope/scenario/scenario.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+namespace tope::test {
+namespace {
+
+/// Line numbers in the tests count from the line of `name`.
+std::string good_scenario() {
+  const std::string text = R"(name: test
+dt: 0.002
+duration: 0.1
+robot:
+  urdf: FOLDER/youbot.urdf
+  config: FOLDER/youbot.yaml
+initial: {arm_joint_2: 0.4, arm_joint_3: 0.9, arm_joint_4: 0.6}
+limits:
+  method: chain
+  buffer: 0.12
+  joints:
+    base_x: {upper: 0.35, buffer: 0.2}
+tasks:
+  - name: turn
+    type: frame_orientation
+    level: 1
+    frame: ee
+    target: {quaternion: [1, 0, 0, 0]}
+    reference: {type: predefined_time, duration: 2.0, gain: 3.0}
+  - name: reach
+    type: frame_position
+    level: 2
+    frame: ee
+    target: {position: [0.5, 0.1, 0.1]}
+mode: velocity
+)";
+  const std::string folder = source_path("robots/youbot").string();
+  return replaced(replaced(text, "FOLDER", folder), "FOLDER", folder);
+}
+
+void check_refused(const std::string& from, const std::string& to, std::initializer_list<std::string> parts) {
+  BOOST_TEST_CONTEXT(from << " -> " << to) {
+    const TemporaryFile file("scenario.yaml", replaced(good_scenario(), from, to));
+    check_error([&] { Scenario::load(file.path()); }, parts);
+  }
+}
+
+void check_override_refused(const std::map<std::string, std::string>& overrides,
+                            std::initializer_list<std::string> parts) {
+  const TemporaryFile file("scenario.yaml", good_scenario());
+  check_error([&] { Scenario::load(file.path(), overrides); }, parts);
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(scenario)
+
+BOOST_AUTO_TEST_CASE(sets_what_it_says) {
+  const TemporaryFile file("scenario.yaml", good_scenario());
+  const Scenario scenario = Scenario::load(file.path());
+  BOOST_TEST(scenario.name == "test");
+  BOOST_TEST(scenario.controller.dt == 0.002);
+  BOOST_TEST(scenario.duration == 0.1);
+  BOOST_TEST((scenario.controller.limits.method == LimitMethod::chain));
+  BOOST_TEST(scenario.controller.limits.rows.buffer == 0.12);
+  BOOST_TEST(scenario.controller.limits.rows.buffers.at("base_x") == 0.2);
+  BOOST_TEST(scenario.robot->position_upper()[0] == 0.35);
+  BOOST_TEST(scenario.initial[4] == 0.4);
+  BOOST_TEST(scenario.initial[7] == 0.0);
+  BOOST_TEST(scenario.tasks.size() == 2U);
+  BOOST_TEST(scenario.tasks[0].name == "turn");
+  BOOST_TEST(scenario.tasks[1].level == 2);
+  BOOST_TEST(scenario.tasks[0].task->type() == "frame_orientation");
+  BOOST_TEST(*scenario.tasks[0].task->duration() == 2.0);
+}
+
+BOOST_AUTO_TEST_CASE(shipped_scenarios_load) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(source_path("scenarios"))) {
+    if (entry.path().extension() == ".yaml") {
+      BOOST_TEST_CONTEXT(entry.path()) { BOOST_CHECK_NO_THROW(Scenario::load(entry.path())); }
+      ++count;
+    }
+  }
+  BOOST_TEST(count >= 1);
+}
+
+BOOST_AUTO_TEST_CASE(wrong_keys_are_refused_with_line_and_suggestion) {
+  check_refused("name: test\n", "nmae: test\n",
+                {"scenario.yaml:1: nmae: unknown key", "did you mean 'name'?"});
+  check_refused("method: chain", "methd: chain", {"scenario.yaml:9: limits.methd: unknown key", "'method'?"});
+  check_refused("{upper: 0.35", "{uper: 0.35", {"scenario.yaml:12: limits.joints.base_x.uper", "'upper'?"});
+  check_refused("frame: ee\n    target: {pos", "frame: ee\n    colour: red\n    target: {pos",
+                {"scenario.yaml:24: tasks.1.colour: unknown key"});
+  check_refused(", gain: 3.0}", ", gain: 3.0, gian: 3.0}",
+                {":19: tasks.0.reference.gian", "did you mean 'gain'?"});
+  check_refused("  config:", "  confg:", {"scenario.yaml:6: robot.confg: unknown key", "'config'?"});
+}
+
+BOOST_AUTO_TEST_CASE(misspelled_keys_that_are_needed_are_named_too) {
+  check_refused("dt: 0.002", "dtt: 0.002", {"scenario.yaml:2: dtt", "did you mean 'dt'?"});
+  check_refused("duration: 0.1", "durations: 0.1",
+                {"scenario.yaml:3: durations", "did you mean 'duration'?"});
+  check_refused("robot:", "robots:", {"scenario.yaml:4: robots", "did you mean 'robot'?"});
+  check_refused("    frame: ee", "    fram: ee", {"scenario.yaml:17: tasks.0.fram", "did you mean 'frame'?"});
+  check_refused(
+      "quaternion:", "quaternoin:", {"scenario.yaml:18: tasks.0.target.quaternoin", "'quaternion'?"});
+}
+
+BOOST_AUTO_TEST_CASE(missing_keys_are_named) {
+  check_refused("dt: 0.002\n", "", {"scenario.yaml", "dt: is missing"});
+  check_refused("    level: 2\n", "", {"scenario.yaml:20: tasks.1.level: is missing"});
+  check_refused("duration: 0.1", "duration:", {"duration: is missing"});
+}
+
+BOOST_AUTO_TEST_CASE(wrong_values_are_refused) {
+  check_refused("dt: 0.002", "dt: -0.002", {"scenario.yaml:2: dt: must be positive, got '-0.002'"});
+  check_refused("dt: 0.002", "dt: fast", {"scenario.yaml:2: dt: expected a number, got 'fast'"});
+  check_refused("dt: 0.002", "dt: .nan", {"scenario.yaml:2: dt", "finite"});
+  check_refused("dt: 0.002", "dt: [1]", {"scenario.yaml:2: dt: expected a number, got a list or a map"});
+  check_refused("duration: 0.1", "duration: 0.001", {"scenario.yaml:3: duration: must be at least dt"});
+  check_refused("method: chain", "method: chian",
+                {":9: limits.method", "unknown limit method 'chian'", "'chain'?"});
+  check_refused("buffer: 0.12", "buffer: -0.12", {"scenario.yaml:10: limits.buffer: must be positive"});
+  check_refused(
+      "    base_x:", "    base_z:", {":12: limits.joints.base_z", "unknown joint 'base_z'", "'base_x'?"});
+  check_refused("upper: 0.35", "upper: -60",
+                {"scenario.yaml:12: limits.joints.base_x", "must be below upper"});
+  check_refused("gain: 3.0", "gain: -3.0", {"scenario.yaml:19: tasks.0.reference.gain: must be positive"});
+  check_refused("type: predefined_time", "type: predefined",
+                {":19: tasks.0.reference.type", "unknown reference"});
+  check_refused("type: frame_position", "type: frame_positon",
+                {":21: tasks.1.type", "unknown task", "'frame_position'?"});
+  check_refused("level: 2", "level: 0", {"scenario.yaml:22: tasks.1.level: must be at least 1"});
+  check_refused("level: 2", "level: 1.5",
+                {"scenario.yaml:22: tasks.1.level: expected a whole number, got '1.5'"});
+  check_refused("frame: ee", "frame: eee",
+                {"scenario.yaml:17: tasks.0.frame", "unknown frame 'eee'", "'ee'?"});
+  check_refused("[1, 0, 0, 0]", "[2, 0, 0, 0]", {":18: tasks.0.target.quaternion: not a rotation", "2.0"});
+  check_refused("[1, 0, 0, 0]", "[1, 0, 0]", {":18: tasks.0.target.quaternion: expected 4 numbers, got 3"});
+  check_refused("[0.5, 0.1, 0.1]", "[0.5, .inf, 0.1]",
+                {"scenario.yaml:24: tasks.1.target.position", "not finite"});
+  check_refused("name: reach", "name: turn",
+                {"scenario.yaml:20: tasks.1.name: a second task is named 'turn'"});
+  check_refused("initial: {arm_joint_2", "initial: {arm_joint_6",
+                {"scenario.yaml:7: initial.arm_joint_6", "unknown key"});
+  check_refused("name: test\n", "name: test\nmode: speed\n",
+                {"scenario.yaml:2: mode: unknown value 'speed'"});
+  check_refused("youbot.urdf", "youbt.urdf", {"youbt.urdf: no such URDF file"});
+  check_refused("youbot.yaml", "youbt.yaml", {"youbt.yaml: no such file"});
+}
+
+BOOST_AUTO_TEST_CASE(files_that_are_no_scenario_are_refused) {
+  check_error([] { Scenario::load("/no/such/scenario.yaml"); }, {"/no/such/scenario.yaml: no such file"});
+  const TemporaryFile broken("scenario.yaml", "a: 1\nb: [1, 2\nc: 3\n");
+  check_error([&] { Scenario::load(broken.path()); }, {"scenario.yaml:", "not YAML"});
+  const TemporaryFile empty("scenario.yaml", "");
+  check_error([&] { Scenario::load(empty.path()); }, {"scenario.yaml: expected a map of keys"});
+}
+
+BOOST_AUTO_TEST_CASE(overrides_apply) {
+  const TemporaryFile file("scenario.yaml", good_scenario());
+  const Scenario scenario =
+      Scenario::load(file.path(), {{"dt", "0.001"},
+                                   {"limits.method", "switch"},
+                                   {"limits.joints.base_x.upper", "0.5"},
+                                   {"tasks.reach.level", "3"},
+                                   {"tasks.0.reference", "{type: exponential, gain: 1.0}"}});
+  BOOST_TEST(scenario.controller.dt == 0.001);
+  BOOST_TEST((scenario.controller.limits.method == LimitMethod::switching));
+  BOOST_TEST(scenario.robot->position_upper()[0] == 0.5);
+  BOOST_TEST(scenario.tasks[1].level == 3);
+  BOOST_TEST(!scenario.tasks[0].task->duration().has_value());
+}
+
+BOOST_AUTO_TEST_CASE(wrong_overrides_are_named) {
+  check_override_refused({{"dt", "-1"}}, {"--set dt=-1: dt: must be positive"});
+  check_override_refused({{"limits.methd", "chain"}},
+                         {"--set limits.methd=chain", "unknown key", "'method'?"});
+  check_override_refused({{"tasks.grasp.level", "1"}}, {"--set tasks.grasp.level", "'grasp'"});
+  check_override_refused({{"dt.x", "1"}}, {"--set dt.x", "single value"});
+  check_override_refused({{"dt", "[1"}}, {"--set dt", "not YAML"});
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+}  // namespace tope::test

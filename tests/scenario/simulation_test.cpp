@@ -1,0 +1,122 @@
+// Simulation: a short run's log and summary, bit for bit repeatable. Metrics: their figures on made-up
+// cycles. Log: rows in memory and in the file. Not here: whether the controller does well; report and
+// command line.
+#include "support/robots.hpp"
+#include "support/text.hpp"
+
+#include <tope/scenario/simulation.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace tope::test {
+namespace {
+
+Scenario short_scenario() {
+  return Scenario::load(source_path("scenarios/youbot_velocity.yaml"), {{"duration", "0.2"}});
+}
+
+Vector one(double value) { return Vector::Constant(1, value); }
+
+Metrics one_joint_metrics(int cycles) {
+  return Metrics(one(-1.0), one(1.0), one(0.1), one(2.0),
+                 {{.name = "reach", .goal = true, .goal_time = 0.2}, {.name = "rest", .goal = false}}, cycles,
+                 0.1);
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(simulation)
+
+BOOST_AUTO_TEST_CASE(logs_every_cycle_and_the_end) {
+  const Scenario scenario = short_scenario();
+  Simulation simulation(scenario, {.keep_log = true});
+  const Summary summary = simulation.run();
+  const Log& log = simulation.log();
+  const std::size_t cycles = static_cast<std::size_t>(std::lround(0.2 / scenario.controller.dt));
+  BOOST_TEST(summary.cycles == static_cast<int>(cycles));
+  BOOST_TEST(log.status().size() == cycles + 1);
+  BOOST_TEST(log.values().size() == (cycles + 1) * (log.columns().size()));
+  BOOST_TEST(log.columns()[0] == "t");
+  BOOST_TEST(log.columns()[1] == "q.base_x");
+  BOOST_TEST(std::count(log.columns().begin(), log.columns().end(), "xi.arm_joint_5.upper") == 1);
+  BOOST_TEST(log.values()[log.columns().size()] == scenario.controller.dt);
+  BOOST_TEST(summary.limit_violation.head(2).maxCoeff() <= 0.0);
+  BOOST_TEST(std::isnan(summary.limit_violation[2]));  // yaw has no limit
+}
+
+BOOST_AUTO_TEST_CASE(repeats_bit_for_bit) {
+  const auto values = [] {
+    Simulation simulation(short_scenario(), {.keep_log = true});
+    simulation.run();
+    return simulation.log().values();
+  };
+  BOOST_TEST((values() == values()));
+}
+
+BOOST_AUTO_TEST_CASE(writes_the_log_to_its_file) {
+  const TemporaryFile file("log.csv", "");
+  {
+    Log log({"t", "x"}, file.path(), true);
+    log.write(std::vector<double>{0.0, 0.5}, "ok");
+    log.write(std::vector<double>{0.1, -1.25}, "limit|scaled");
+    BOOST_TEST(log.values()[3] == -1.25);
+    BOOST_TEST(log.status()[1] == "limit|scaled");
+  }
+  BOOST_TEST(read_text(file.path()) == "t,x,status\n0,0.5,ok\n0.1,-1.25,limit|scaled\n");
+  check_error([] { Log({"t"}, "/no/such/folder/log.csv", false); },
+              {"cannot write", "/no/such/folder/log.csv"});
+}
+
+BOOST_AUTO_TEST_CASE(tells_its_progress) {
+  std::vector<double> progress;
+  Simulation simulation(short_scenario(), {.on_progress = [&](double share) { progress.push_back(share); }});
+  simulation.run();
+  BOOST_TEST(progress.size() > 10U);
+  BOOST_TEST(std::is_sorted(progress.begin(), progress.end()));
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(metrics)
+
+BOOST_AUTO_TEST_CASE(figures_are_those_of_the_cycles) {
+  Metrics metrics = one_joint_metrics(4);
+  Status fine;
+  Status limited;
+  limited.add(Event::limit);
+  metrics.observe(0.0, one(0.0), one(2.0), {1.0, 1.0}, fine, 5.0);  // the first command is no jump
+  metrics.observe(0.1, one(0.95), one(1.0), {0.5, 1.0}, limited, 7.0);
+  metrics.observe(0.2, one(1.02), one(-0.5), {1e-4, 1.0}, limited, 6.0);
+  metrics.observe(0.3, one(0.5), one(0.0), {2e-4, 1.0}, fine, 50.0);
+  metrics.observe_end(0.4, one(0.4), {3e-4, 1.0});
+  const Summary summary = metrics.summary();
+  BOOST_TEST(std::abs(summary.limit_violation[0] - 0.02) <= 1e-12);
+  BOOST_TEST(summary.command_jump[0] == 0.75);
+  BOOST_TEST(summary.command_variation[0] == 2.0);  // of the last two cycles
+  BOOST_TEST(std::abs(summary.buffer_time[0] - 0.2) <= 1e-12);
+  BOOST_TEST(summary.status_counts.at("ok") == 2);
+  BOOST_TEST(summary.status_counts.at("limit") == 2);
+  BOOST_TEST(summary.tasks.at("reach").final_error == 3e-4);
+  BOOST_TEST(*summary.tasks.at("reach").at_goal_time == 1e-4);
+  BOOST_TEST(!summary.tasks.at("rest").at_goal_time.has_value());
+  BOOST_TEST(*summary.time_to_goal == 0.2);
+  BOOST_TEST(summary.cycle_time_us[3] == 50.0);
+  BOOST_TEST(summary.cycles == 4);
+}
+
+BOOST_AUTO_TEST_CASE(a_goal_that_is_left_again_is_not_reached) {
+  Metrics metrics = one_joint_metrics(2);
+  metrics.observe(0.0, one(0.0), one(0.0), {1e-4, 1.0}, {}, 1.0);
+  metrics.observe(0.1, one(0.0), one(0.0), {1e-2, 1.0}, {}, 1.0);
+  metrics.observe_end(0.2, one(0.0), {1e-2, 1.0});
+  BOOST_TEST(!metrics.summary().time_to_goal.has_value());
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+}  // namespace tope::test
