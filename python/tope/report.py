@@ -118,6 +118,7 @@ def sections(view: View) -> list[Section]:
         task_errors(view),
         status(view),
         wheels(view),
+        figure_4(view),
         figure_5(view),
     ]
 
@@ -308,10 +309,28 @@ def stretches(t: Array, raised: NDArray[np.bool_]) -> Array:
 
 
 def wheels(view: View) -> Section:
-    """Speeds of the base's wheels."""
+    """Speeds of the base's wheels, in torque mode their torques."""
+    what, unit = ("torques", "Nm") if view.mode == "torque" else ("speeds", "rad/s")
     columns = [(name.removeprefix("wheel."), name) for name in view.columns("wheel.")]
-    panels = together(view, "Wheels" if not view.compares else "Wheel", "rad/s", columns) if columns else []
-    return Section("Wheel speeds", "", panels)
+    panels = together(view, "Wheels" if not view.compares else "Wheel", unit, columns) if columns else []
+    return Section(f"Wheel {what}", "", panels)
+
+
+def figure_4(view: View) -> Section:
+    """The paper's Figure 4, in torque mode, if its joints exist."""
+    joints = {joint["name"]: joint for joint in view.described("joints")}
+    if view.mode != "torque" or any(name not in joints for name in FIGURE_5_JOINTS):
+        return Section("", "", [])
+    pair = [joints[name] for name in FIGURE_5_JOINTS]
+    panels = [
+        *(position_panel(view, joint, f"{joint['name']}, position") for joint in pair),
+        *(rate_panel(view, joint, f"{joint['name']}, velocity") for joint in pair),
+    ]
+    reaching = next((task for task in view.described("tasks") if task["unit"] == "m"), None)
+    if reaching is not None:
+        panels.append(norm_panel(view, reaching, f"error of {reaching['name']}"))
+    text = "The joints that meet their limits, and the task that brings the end-effector to its goal."
+    return Section("The paper’s Figure 4", text, panels, pairs=True)
 
 
 def figure_5(view: View) -> Section:

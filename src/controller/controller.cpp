@@ -91,11 +91,8 @@ Controller::Controller(const Robot& robot, const ControllerOptions& options)
 }
 
 std::vector<Condition> Controller::conditions() const {
-  if (torque_mode()) {
-    return {};
-  }
-  return velocity_conditions(robot_, limits_, options_.limits.method, options_.limits.unilateral.headroom,
-                             options_.dt);
+  const auto list = torque_mode() ? torque_conditions : velocity_conditions;
+  return list(robot_, limits_, options_.limits.method, options_.limits.unilateral.headroom, options_.dt);
 }
 
 TaskHandle Controller::add(int level, const Task& task, const TransitionOptions& options) {

@@ -32,6 +32,7 @@ Matrix wheel_rows(const MecanumBase& base, WheelDistribution distribution) {
 TorqueBounds::TorqueBounds(const Robot& robot, WheelDistribution distribution)
     : robot_(robot),
       wheel_rows_(robot.base() ? wheel_rows(*robot.base(), distribution) : Matrix(0, 3)),
+      wheels_(Vector::Zero(wheel_rows_.rows())),
       acceleration_lower_(Vector::Constant(robot.nv(), -std::numeric_limits<double>::infinity())),
       acceleration_upper_(Vector::Constant(robot.nv(), std::numeric_limits<double>::infinity())) {
   const Eigen::Index n = robot.nv();
@@ -77,7 +78,8 @@ CommandBounds TorqueBounds::apply(const Vector& first_acceleration, Vector& firs
   if (result.clipped >= 0) {
     first_torque = first_torque.cwiseMax(lower_.segment(n, n)).cwiseMin(upper_.segment(n, n));
     if (robot_.base()) {  // the wrench keeps its direction
-      const double peak = (wheel_rows_ * robot_.base()->base_wrench(first_torque, yaw)).cwiseAbs().maxCoeff();
+      wheels_.noalias() = wheel_rows_ * robot_.base()->base_wrench(first_torque, yaw);
+      const double peak = wheels_.cwiseAbs().maxCoeff();
       for (const int joint : robot_.base()->options().joints) {
         first_torque[joint] *= std::min(1.0, wheel_bound_ / std::max(peak, wheel_bound_));
       }

@@ -52,6 +52,66 @@ Condition headroom_fits(const Robot& robot, const JointLimits& limits, int joint
           .advice = text("lower limits.unilateral.headroom to at most ", 0.5 * width)};
 }
 
+Condition second_order_servo_is_stable(const JointLimitOptions& options, double dt) {
+  const double c = 1.0 + 0.5 * options.gain * dt;
+  return {.name = "limit servo within one period",
+          .joint = "",
+          .expression = "dt * (1 + gain dt / 2) * servo_gain <= 1",
+          .value = dt * c * options.servo_gain,
+          .bound = 1.0,
+          .advice = text("lower limits.servo_gain to at most ", 1.0 / (c * dt), " 1/s")};
+}
+
+/// Away from its limits a joint at rest must be outside both of its rows.
+Condition rows_apart(const Robot& robot, const JointLimits& limits, int joint) {
+  const std::string& name = robot.joint_names()[static_cast<std::size_t>(joint)];
+  const double speed = limits.velocity_limit()[joint];
+  const double gain = limits.options().gain;
+  return {.name = "rows idle at rest",
+          .joint = name,
+          .expression = "gain * buffer <= 0.9 v_max",
+          .value = gain * limits.buffer(joint),
+          .bound = 0.9 * speed,
+          .advice = text("lower the buffer of ", name, " to at most ", 0.9 * speed / gain, " ",
+                         robot.joint_unit(joint), " or limits.gain to at most ",
+                         0.9 * speed / limits.buffer(joint), " 1/s")};
+}
+
+/// A joint at full speed that is accelerated as hard as its row can brake must not cross its buffer between two samples.
+Condition second_order_buffer_is_wide(const Robot& robot, const JointLimits& limits, int joint, double dt) {
+  const std::string& name = robot.joint_names()[static_cast<std::size_t>(joint)];
+  const JointLimitOptions& options = limits.options();
+  const double kappa = ramp_slope_factor(options.ramp);
+  const double c = 1.0 + 0.5 * options.gain * dt;
+  const double speed = limits.velocity_limit()[joint];
+  const double buffer = limits.buffer(joint);
+  const double acceleration = options.gain * (speed + options.servo_gain * buffer);
+  const double shrink = 1.0 - 0.5 * options.gain * options.gain * dt * dt;
+  const double needed = kappa * dt * (speed + c * acceleration / options.gain);
+  return {
+      .name = "buffer wide enough for the period",
+      .joint = name,
+      .expression =
+          "kappa * dt * (v_max + c A / gain) <= buffer * (1 - (gain dt)^2 / 2), A = gain (v_max + "
+          "servo_gain buffer), c = 1 + gain dt / 2",
+      .value = needed,
+      .bound = buffer * shrink,
+      .advice = text("raise the buffer of ", name, " above ", needed / shrink, " ", robot.joint_unit(joint),
+                     " or lower dt below ", dt * buffer * shrink / needed, " s")};
+}
+
+Condition second_order_headroom_fits(const Robot& robot, const JointLimits& limits, int joint,
+                                     double headroom) {
+  const std::string& name = robot.joint_names()[static_cast<std::size_t>(joint)];
+  const double width = 0.5 * limits.options().servo_gain * limits.velocity_limit()[joint];
+  return {.name = "headroom inside the bounds",
+          .joint = name,
+          .expression = "2 * headroom <= servo_gain * v_max / 2",
+          .value = 2.0 * headroom,
+          .bound = width,
+          .advice = text("lower limits.unilateral.headroom to at most ", 0.5 * width)};
+}
+
 }  // namespace
 
 std::vector<Condition> velocity_conditions(const Robot& robot, const JointLimits& limits, LimitMethod method,
@@ -72,6 +132,27 @@ std::vector<Condition> velocity_conditions(const Robot& robot, const JointLimits
     }
     conditions.push_back(method == LimitMethod::unilateral ? headroom_fits(robot, limits, joint, headroom)
                                                            : buffer_is_wide(robot, limits, joint, kappa, dt));
+  }
+  return conditions;
+}
+
+std::vector<Condition> torque_conditions(const Robot& robot, const JointLimits& limits, LimitMethod method,
+                                         double headroom, double dt) {
+  std::vector<Condition> conditions;
+  if (method == LimitMethod::none) {
+    return conditions;
+  }
+  conditions.push_back(second_order_servo_is_stable(limits.options(), dt));
+  for (int joint = 0; joint < limits.size(); ++joint) {
+    if (!limits.limited(joint)) {
+      continue;
+    }
+    if (method == LimitMethod::unilateral) {
+      conditions.push_back(second_order_headroom_fits(robot, limits, joint, headroom));
+    } else {
+      conditions.push_back(rows_apart(robot, limits, joint));
+      conditions.push_back(second_order_buffer_is_wide(robot, limits, joint, dt));
+    }
   }
   return conditions;
 }

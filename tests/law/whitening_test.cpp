@@ -24,8 +24,7 @@ BOOST_AUTO_TEST_CASE(gives_the_weighted_pseudo_inverse) {
       const Whitening whitening = Whitening::velocity(weight);
       Matrix a;
       whitening.rows(jacobian, a);
-      Vector u;
-      whitening.command(a.completeOrthogonalDecomposition().solve(rate), u);
+      const Vector u = whitening.command() * a.completeOrthogonalDecomposition().solve(rate);
       const Matrix weighted = weight * jacobian.transpose();
       const Vector expected = weighted * (jacobian * weighted).inverse() * rate;  // J^+ = W J^T (J W J^T)^-1
       BOOST_TEST((u - expected).norm() <= 1e-10 * (1.0 + expected.norm()));

@@ -35,6 +35,7 @@ class TorqueBounds {
   Robot robot_;
   Matrix wheel_rows_;  // of the base wrench (k x 3), within +-wheel_bound_
   double wheel_bound_ = 0.0;
+  Vector wheels_;  // (k)
   Vector acceleration_lower_;
   Vector acceleration_upper_;
   Vector lower_;  // accelerations, torques, wheel rows (2 n + k)

@@ -26,4 +26,9 @@ struct Condition {
 std::vector<Condition> velocity_conditions(const Robot& robot, const JointLimits& limits, LimitMethod method,
                                            double headroom, double dt);
 
+/// The same of torque mode, for the rows measured on the predicted position and for the unilateral law. What the motors
+/// must be able to brake depends on the state, and is not checked.
+std::vector<Condition> torque_conditions(const Robot& robot, const JointLimits& limits, LimitMethod method,
+                                         double headroom, double dt);
+
 }  // namespace tope

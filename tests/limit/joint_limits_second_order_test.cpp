@@ -1,0 +1,159 @@
+// Limit rows of torque mode: their formulas, and invariance of a sampled double integrator under the hardest push that
+// the conditions admit, at the bound of the period and beyond it. Not here: velocity mode (joint_limits_test).
+#include "support/robots.hpp"
+
+#include <tope/limit/conditions.hpp>
+#include <tope/limit/joint_limits.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tope::test {
+namespace {
+
+constexpr int kJoint = 7;  // arm_joint_5
+constexpr double kGain = 4.0;
+constexpr double kServo = 20.0;
+constexpr double kBuffer = 0.1;
+
+JointLimitOptions options(Measure measure = Measure::predicted) {
+  return {.buffer = kBuffer, .gain = kGain, .servo_gain = kServo, .measure = measure};
+}
+
+/// The joint at `distance` before its upper limit with speed v, all others at rest.
+void place(JointLimits& limits, const Robot& robot, double distance, double v) {
+  Vector q = Vector::Zero(8);
+  Vector speed = Vector::Zero(8);
+  q[kJoint] = robot.position_upper()[kJoint] - distance;
+  speed[kJoint] = v;
+  limits.update_second_order(q, speed);
+}
+
+/// Largest position beyond the upper limit of a joint that is pushed with the largest acceleration that the row's
+/// activation leaves, from many starts inside the safe set, sampled with period dt.
+double worst_crossing(const Robot& robot, double dt, double buffer) {
+  JointLimits limits(robot, {.buffer = buffer, .gain = kGain, .servo_gain = kServo});
+  Vector lower(8);
+  Vector upper(8);
+  double worst = -1.0;
+  for (double start = 0.005; start < 3.0 * buffer; start += 0.11 * buffer) {
+    double distance = start;
+    double v = 0.0;
+    for (int i = 0; i < static_cast<int>(2.0 / dt); ++i) {
+      place(limits, robot, distance, v);
+      limits.blended_acceleration_bounds(limits.activation(), dt, lower, upper);
+      const double a = upper[kJoint];
+      distance -= dt * v + 0.5 * dt * dt * a;
+      v = std::min(v + dt * a, robot.velocity_limit()[kJoint]);
+      worst = std::max(worst, -distance);
+    }
+  }
+  return worst;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(joint_limits_second_order)
+
+BOOST_AUTO_TEST_CASE(row_is_the_papers_on_the_predicted_position) {
+  const Robot robot = youbot();
+  JointLimits limits(robot, options());
+  // far enough below the speed bound that the envelope is its straight part to within the corner's rounding
+  for (const double distance : {0.02, 0.05, 0.1}) {
+    for (const double v : {-0.2, 0.0, 0.1}) {
+      place(limits, robot, distance, v);
+      const double predicted = distance - v / kGain;
+      BOOST_TEST(std::abs(limits.activation()[kJoint] -
+                          ramp(Ramp::raised_cosine, 1.0 - predicted / kBuffer)) < 0.06);
+      const double servo = -kGain * kServo * (kBuffer - distance) - (kGain + kServo) * v;
+      BOOST_TEST(std::abs(limits.target()[kJoint] - servo) < 0.15);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(measure_position_is_the_paper_to_the_letter) {
+  const Robot robot = youbot();
+  JointLimits limits(robot, options(Measure::position));
+  place(limits, robot, 0.03, 0.5);
+  BOOST_TEST(std::abs(limits.activation()[kJoint] - ramp(Ramp::raised_cosine, 0.7)) <= 1e-12);
+  BOOST_TEST(std::abs(limits.target()[kJoint] - (-kGain * kServo * 0.07 - (kGain + kServo) * 0.5)) <= 1e-12);
+}
+
+BOOST_AUTO_TEST_CASE(bounds_hold_the_envelope_as_a_servo_would) {
+  const Robot robot = youbot();
+  JointLimits limits(robot, options());
+  // integrate dv/dt = bound: the speed joins the envelope and the joint comes to rest at the margin
+  double distance = 0.8;
+  double v = 0.0;
+  const double dt = 1e-4;
+  for (int i = 0; i < 50000; ++i) {
+    place(limits, robot, distance, v);
+    const double a = limits.motion_upper()[kJoint];
+    distance -= dt * v + 0.5 * dt * dt * a;
+    v += dt * a;
+    BOOST_TEST_REQUIRE(distance > 0.0);
+    BOOST_TEST_REQUIRE(v <= robot.velocity_limit()[kJoint]);
+  }
+  BOOST_TEST(distance >= limits.options().margin);
+  BOOST_TEST(distance < limits.options().margin + 5e-3);
+  BOOST_TEST(std::abs(v) < 1e-3);
+}
+
+BOOST_AUTO_TEST_CASE(bounds_leave_an_interval_everywhere) {
+  const Robot robot = youbot();
+  JointLimits limits(robot, options());
+  for (double distance = -0.5; distance < 5.7; distance += 0.01) {
+    for (double v = -1.57; v <= 1.57; v += 0.157) {
+      place(limits, robot, distance, v);
+      BOOST_TEST_REQUIRE(limits.motion_upper()[kJoint] - limits.motion_lower()[kJoint] > 5.0);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(sides_mirror_each_other) {
+  const Robot robot = youbot();
+  JointLimits limits(robot, options());
+  Vector q = Vector::Zero(8);
+  Vector v = Vector::Zero(8);
+  q[kJoint] = robot.position_upper()[kJoint] - 0.04;
+  v[kJoint] = 0.1;
+  limits.update_second_order(q, v);
+  const double target = limits.target()[kJoint];
+  const double bound = limits.motion_upper()[kJoint];
+  limits.update_second_order(-q, -v);  // limits of this joint are symmetric
+  BOOST_TEST(std::abs(limits.target()[kJoint] + target) <= 1e-12);
+  BOOST_TEST(std::abs(limits.motion_lower()[kJoint] + bound) <= 1e-12);
+}
+
+BOOST_AUTO_TEST_CASE(blended_rows_keep_the_limit_at_the_conditions_edge) {
+  const Robot robot = youbot();
+  for (const double dt : {1e-3, 5e-3}) {
+    JointLimits limits(robot, {.buffer = 0.3, .gain = kGain, .servo_gain = kServo});
+    double buffer = 0.3;
+    for (const Condition& condition : torque_conditions(robot, limits, LimitMethod::chain, 0.5, dt)) {
+      if (condition.joint == "arm_joint_5" && condition.name == "buffer wide enough for the period") {
+        BOOST_TEST(condition.holds());
+        buffer = 1.02 * condition.value;
+      }
+    }
+    buffer = std::max(buffer, 0.02);
+    BOOST_TEST(worst_crossing(robot, dt, buffer) <= 0.0);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(conditions_name_what_fails) {
+  const Robot robot = youbot();
+  JointLimits limits(robot, {.buffer = 0.01, .gain = kGain, .servo_gain = kServo});
+  bool named = false;
+  for (const Condition& condition : torque_conditions(robot, limits, LimitMethod::chain, 0.5, 0.02)) {
+    named = named || (!condition.holds() && condition.joint == "arm_joint_2" &&
+                      condition.advice.find("raise the buffer of arm_joint_2") != std::string::npos);
+  }
+  BOOST_TEST(named);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+}  // namespace tope::test

@@ -1,0 +1,146 @@
+"""Torque mode against the paper's formulas (9)-(10), (14)-(15), written down naively on Pinocchio's own Python."""
+
+from pathlib import Path
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+import tope
+
+ROOT = Path(__file__).parents[2]
+URDF = ROOT / "robots/youbot/youbot.urdf"
+CONFIG = ROOT / "robots/youbot/youbot.yaml"
+SEED = 20
+KP, KV = 9.0, 6.0  # of tope.Exponential(gain=3)
+
+
+def build() -> tuple[pin.Model, pin.Data]:
+    """The youBot as Pinocchio reads it, with the rotors of the YAML file."""
+    full = pin.buildModelFromUrdf(str(URDF))
+    fingers = [full.getJointId(f"gripper_finger_joint_{side}") for side in "lr"]
+    model = pin.buildReducedModel(full, fingers, pin.neutral(full))
+    wheel, radius, arm = 0.00901, 0.0475, 0.385
+    base = 4 * wheel / radius**2
+    rotors = [1.35e-5 * 156**2, 1.35e-5 * 156**2, 1.35e-5 * 100**2, 9.25e-6 * 71**2, 3.5e-6 * 71**2]
+    model.armature = np.array([base, base, base * arm**2, *rotors])
+    return model, model.createData()
+
+
+class Terms:
+    """H, h and the task terms at one state."""
+
+    def __init__(self, q: np.ndarray, v: np.ndarray) -> None:
+        self.model, self.data = build()
+        self.v = v
+        full = np.concatenate([q[:2], [np.cos(q[2]), np.sin(q[2])], q[3:]])
+        upper = np.triu(pin.crba(self.model, self.data, full))
+        self.mass = upper + np.triu(upper, 1).T
+        self.bias = pin.rnea(self.model, self.data, full, v, np.zeros(8)).copy()
+        pin.forwardKinematics(self.model, self.data, full, v, np.zeros(8))
+        pin.computeJointJacobians(self.model, self.data, full)
+        pin.updateFramePlacements(self.model, self.data)
+
+    def position_task(self, frame: str, target: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Jacobian, drift and desired acceleration of a frame's position."""
+        index = self.model.getFrameId(frame)
+        jacobian = pin.getFrameJacobian(self.model, self.data, index, pin.LOCAL_WORLD_ALIGNED)[:3]
+        acceleration = pin.getFrameClassicalAcceleration(
+            self.model, self.data, index, pin.LOCAL_WORLD_ALIGNED
+        )
+        error = self.data.oMf[index].translation - target
+        return jacobian, acceleration.linear, -KP * error - KV * jacobian @ self.v
+
+
+def papers_law(terms: Terms, tasks: list[tuple[np.ndarray, np.ndarray, np.ndarray]]) -> np.ndarray:
+    """u of (15), with Q = J H^-1, W = H and the accumulated residual."""
+    inverse = np.linalg.inv(terms.mass)
+    u, null_space = np.zeros(8), np.eye(8)
+    for jacobian, drift, desired in tasks:
+        q_map = jacobian @ inverse
+        mu = q_map @ terms.bias - drift
+        # (14) acts on torques: N = I - Q^#W Q, and Q_bar = Q N
+        q_bar = q_map @ null_space
+        weighted = terms.mass @ q_bar.T @ np.linalg.inv(q_bar @ terms.mass @ q_bar.T)
+        u = u + weighted @ (desired + mu - q_map @ u)
+        null_space = null_space - weighted @ q_bar
+    return u
+
+
+def random_state(random: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    q = np.concatenate(
+        [random.uniform(-1, 1, 3), random.uniform(-2, 2, 1), random.uniform(0.3, 0.9, 3), [1.0]]
+    )
+    return q, random.uniform(-0.2, 0.2, 8)
+
+
+@pytest.mark.parametrize("levels", [1, 2])
+def test_zero_torque_null_space_is_the_papers_law(levels: int) -> None:
+    random = np.random.default_rng(SEED)
+    robot = tope.Robot.from_urdf(URDF, CONFIG)
+    robot.effort_limit = np.full(8, 1e6)
+    compared = 0
+    for _ in range(40):
+        q, v = random_state(random)
+        terms = Terms(q, v)
+        controller = tope.Controller(
+            robot,
+            mode="torque",
+            dt=1e-3,
+            limits=tope.LimitOptions(method="none"),
+            null_space="zero_torque",
+        )
+        tasks = []
+        for level, frame in enumerate(["ee", "base_link"][:levels], start=1):
+            target = terms.data.oMf[terms.model.getFrameId(frame)].translation + random.uniform(
+                -0.002, 0.002, 3
+            )
+            rows = terms.position_task(frame, target)
+            if frame == "base_link":  # its height never moves
+                break
+            tasks.append(rows)
+            task = tope.FramePosition(frame=frame, target=target, reference=tope.Exponential(gain=3.0))
+            controller.add(task, level=level)
+        if levels == 2:
+            posture = {"base_x": 0.1, "arm_joint_1": 0.2}
+            joints = [robot.joint_names.index(name) for name in posture]
+            jacobian = np.eye(8)[joints]
+            error = q[joints] - np.array(list(posture.values()))
+            tasks.append((jacobian, np.zeros(2), -KP * error - KV * v[joints]))
+            task = tope.JointPosition(target=posture, reference=tope.Exponential(gain=3.0))
+            controller.add(task, level=2)
+        u = controller.update(q, v, 0.0)
+        if controller.status.events:
+            continue  # damped or scaled by design
+        expected = papers_law(terms, tasks)
+        assert np.abs(u - expected).max() <= 1e-8 * max(1.0, np.abs(expected).max()), f"seed {SEED}"
+        compared += 1
+    assert compared >= 10
+
+
+def test_compensated_null_space_differs_by_the_projected_bias() -> None:
+    random = np.random.default_rng(SEED)
+    robot = tope.Robot.from_urdf(URDF, CONFIG)
+    q, v = random_state(random)
+    terms = Terms(q, v)
+    target = terms.data.oMf[terms.model.getFrameId("ee")].translation + 0.001
+    rows = terms.position_task("ee", target)
+
+    def torque(null_space: str) -> np.ndarray:
+        controller = tope.Controller(
+            robot, mode="torque", dt=1e-3, limits=tope.LimitOptions(method="none"), null_space=null_space
+        )
+        task = tope.FramePosition(frame="ee", target=target, reference=tope.Exponential(gain=3.0))
+        controller.add(task, level=1)
+        return controller.update(q, v, 0.0)
+
+    q_map = rows[0] @ np.linalg.inv(terms.mass)
+    weighted = terms.mass @ q_map.T @ np.linalg.inv(q_map @ terms.mass @ q_map.T)
+    projected = (np.eye(8) - weighted @ q_map) @ terms.bias
+    assert torque("compensated") - torque("zero_torque") == pytest.approx(projected, abs=1e-8)
+
+
+def test_torque_mode_refuses_joint_weights() -> None:
+    robot = tope.Robot.from_urdf(URDF, CONFIG)
+    with pytest.raises(tope.ConfigError, match="joint_weights: torque mode"):
+        tope.Controller(robot, mode="torque", dt=1e-3, joint_weights=[1.0] * 8)

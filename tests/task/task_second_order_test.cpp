@@ -1,0 +1,121 @@
+// Error rate and drift of every task against central differences along joint motions with constant acceleration, with
+// fixed and moving targets: d2e/dt2 = J a + drift. Not here: the first order (task_test).
+#include "support/robots.hpp"
+
+#include <tope/task/damping.hpp>
+#include <tope/task/frame_orientation.hpp>
+#include <tope/task/frame_pose.hpp>
+#include <tope/task/frame_position.hpp>
+#include <tope/task/posture.hpp>
+#include <tope/task/rotation_error.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+
+namespace tope::test {
+namespace {
+
+/// Largest deviations of error rate and drift over random motions.
+void check_second_order(const Robot& robot, Task& task, int seeds) {
+  RobotTerms terms(robot);
+  const Vector no_acceleration = Vector::Zero(robot.nv());
+  double largest = 0.0;
+  for (int seed = 0; seed < seeds; ++seed) {
+    BOOST_TEST_CONTEXT(task.type() << ", seed " << seed) {
+      Random random(seed);
+      const Vector q = random_position(random, robot, 0.0);
+      const Vector v = random.vector(robot.nv());
+      const Vector a = random.vector(robot.nv());
+      const double t = random.uniform(0.0, 3.0);
+      const double h = 1e-4;
+      const auto at = [&](double s) {
+        terms.update_dynamics(q + s * v + 0.5 * s * s * a, v + s * a);
+        task.update_second_order(terms, t + s, no_acceleration);
+      };
+      at(h);
+      const Vector rate_ahead = task.error_rate();
+      const Vector ahead = task.error();
+      at(-h);
+      const Vector rate_behind = task.error_rate();
+      const Vector behind = task.error();
+      at(0.0);
+      if (task.near_flip()) {
+        continue;  // the error may pass pi within the step
+      }
+      const Vector acceleration = task.jacobian() * a + task.drift();
+      BOOST_TEST((task.error_rate() - (ahead - behind) / (2.0 * h)).lpNorm<Eigen::Infinity>() <= 1e-6);
+      const double error = (acceleration - (rate_ahead - rate_behind) / (2.0 * h)).lpNorm<Eigen::Infinity>();
+      BOOST_TEST(error <= 1e-5 * (1.0 + acceleration.lpNorm<Eigen::Infinity>()));
+      largest = std::max(largest, error);
+    }
+  }
+  BOOST_TEST_MESSAGE(task.type() << ": largest deviation of the acceleration " << largest);
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(task_second_order)
+
+BOOST_AUTO_TEST_CASE(frame_position_accelerates) {
+  const Robot robot = youbot();
+  Random random(11);
+  FramePosition fixed(robot, "ee", Vector3(random.vector(3)));
+  check_second_order(robot, fixed, 50);
+  FramePosition moving(robot, "ee",
+                       moving_along_sine(Vector3(random.vector(3)), Vector3(random.vector(3)), 0.5));
+  check_second_order(robot, moving, 50);
+}
+
+BOOST_AUTO_TEST_CASE(frame_orientation_accelerates) {
+  const Robot robot = youbot();
+  Random random(12);
+  for (int i = 0; i < 5; ++i) {
+    FrameOrientation fixed(robot, "ee", random.rotation());
+    check_second_order(robot, fixed, 40);
+    FrameOrientation spinning_target(robot, "arm_link_4", spinning(random.rotation(), random.vector(3, 0.4)));
+    check_second_order(robot, spinning_target, 40);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(frame_pose_accelerates) {
+  const Robot robot = youbot();
+  Random random(13);
+  FramePose moving(robot, "ee", moving_along_sine(Vector3(random.vector(3)), Vector3(random.vector(3)), 0.3),
+                   spinning(random.rotation(), random.vector(3, 0.4)));
+  check_second_order(robot, moving, 100);
+}
+
+BOOST_AUTO_TEST_CASE(joint_tasks_accelerate) {
+  const Robot robot = youbot();
+  Random random(14);
+  Posture posture(robot, random.vector(robot.nq()));
+  check_second_order(robot, posture, 30);
+}
+
+BOOST_AUTO_TEST_CASE(damping_brakes_in_proportion) {
+  const Robot robot = youbot();
+  RobotTerms terms(robot);
+  Random random(15);
+  const Vector v = random.vector(8);
+  terms.update_dynamics(random.vector(8), v);
+  Damping damping(robot, 3.0);
+  damping.update_second_order(terms, 0.0, Vector::Zero(8));
+  BOOST_TEST((damping.acceleration() + 3.0 * v).norm() <= 1e-14);
+}
+
+BOOST_AUTO_TEST_CASE(rate_of_the_inverse_right_jacobian_is_its_derivative) {
+  Random random(16);
+  for (const double angle : {1e-9, 1e-5, 0.009, 0.011, 0.5, 2.0, 3.0}) {
+    const Vector3 e = angle * Vector3(random.vector(3)).normalized();
+    const Vector3 rate = random.vector(3);
+    const double h = 1e-6;
+    const Matrix3 expected =
+        (inverse_right_jacobian(e + h * rate) - inverse_right_jacobian(e - h * rate)) / (2.0 * h);
+    BOOST_TEST((inverse_right_jacobian_rate(e, rate) - expected).lpNorm<Eigen::Infinity>() <= 1e-8);
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+}  // namespace tope::test
