@@ -164,7 +164,9 @@ void BoundedLeastSquares::deactivate(int position) {
     triangle_(i, i) = length;
     triangle_(i + 1, i) = 0.0;
     const int right = active_ - i - 1;
-    triangle_.block(i, i + 1, 2, right).applyOnTheLeft(0, 1, rotation.adjoint());
+    if (right > 0) {
+      triangle_.block(i, i + 1, 2, right).applyOnTheLeft(0, 1, rotation.adjoint());
+    }
     basis_.applyOnTheRight(i, i + 1, rotation);
   }
 }

@@ -38,7 +38,7 @@ double largest_scale(const Bounds& bounds, const Vector& first, const Vector& sh
   return low;
 }
 
-Vector three(double a, double b, double c) { return (Vector(3) << a, b, c).finished(); }
+Vector three(double a, double b, double c) { return Vector3(a, b, c); }
 
 }  // namespace
 
