@@ -113,7 +113,7 @@ class PotentialFieldOptions:
 class LimitOptions:
     """How joint limits are met."""
 
-    def __init__(self, *, method: str = 'unilateral', buffer: float = 0.1, gain: float = 10.0, margin: float = 0.001, ramp: str = 'raised_cosine', buffers: Mapping[str, float] = {}, unilateral: UnilateralOptions = ..., potential_field: PotentialFieldOptions = ..., enforce_conditions: bool = True) -> None: ...
+    def __init__(self, *, method: str = 'unilateral', buffer: float = 0.1, gain: float = 10.0, margin: float = 0.001, ramp: str = 'raised_cosine', buffers: Mapping[str, float] = {}, servo_gain: float = 20.0, measure: str = 'predicted', unilateral: UnilateralOptions = ..., potential_field: PotentialFieldOptions = ..., enforce_conditions: bool = True) -> None: ...
 
 class Status:
     """What acted in one cycle."""
@@ -138,7 +138,7 @@ class TaskHandle:
 class Controller:
     """Serves tasks in strict order of priority and keeps joint limits."""
 
-    def __init__(self, robot: Robot, *, mode: str, dt: float, limits: LimitOptions = ..., joint_weights: Sequence[float] = []) -> None:
+    def __init__(self, robot: Robot, *, mode: str, dt: float, limits: LimitOptions = ..., joint_weights: Sequence[float] = [], null_space: str = 'compensated', wheel_distribution: str = 'minimum_norm') -> None:
         """Takes a copy of the robot with its bounds as they are."""
 
     def add(self, task: Task, *, level: int, over: float = 0.0) -> TaskHandle:

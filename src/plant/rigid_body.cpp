@@ -4,6 +4,7 @@
 #include <tope/plant/rigid_body.hpp>
 
 #include <pinocchio/algorithm/aba.hpp>
+#include <pinocchio/algorithm/crba.hpp>
 #include <pinocchio/algorithm/energy.hpp>
 #include <pinocchio/algorithm/rnea.hpp>
 
@@ -141,7 +142,10 @@ const Vector& RigidBody::velocity() const { return scratch_->v; }
 
 double RigidBody::energy() const {
   Scratch& s = *scratch_;
-  return pinocchio::computeMechanicalEnergy(s.model, s.data, s.q, s.v);
+  // from the mass matrix: Pinocchio 4.1's own kinetic energy misses a part of the rotors'
+  pinocchio::crba(s.model, s.data, s.q, pinocchio::Convention::WORLD);
+  const Vector momentum = s.data.M.selfadjointView<Eigen::Upper>() * s.v;
+  return 0.5 * s.v.dot(momentum) + pinocchio::computePotentialEnergy(s.model, s.data, s.q);
 }
 
 }  // namespace tope

@@ -4,8 +4,8 @@
 
 namespace tope {
 
-/// Brings every joint to rest: asks for v = 0, and in torque mode for dv/dt = -gain v, one row a joint. Meant for the lowest level, where it takes
-/// what freedom is left. Its error is zero by definition.
+/// Brings every joint to rest, one row a joint: asks for v = 0, and in torque mode for dv/dt = -gain v. Meant for
+/// the lowest level, where it takes what freedom is left. Its error is zero by definition.
 class Damping final : public Task {
  public:
   /// The gain [1/s] is for torque mode. Errors: ConfigError unless it is positive and finite.
