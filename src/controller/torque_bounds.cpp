@@ -6,8 +6,8 @@
 namespace tope {
 namespace {
 
-/// Rows of the base wrench that the wheels' bound limits: the least-norm torques themselves, or, since the least peak is
-/// (max g - min g) / 2 with g the least-norm torques turned by the idle pattern, all differences of two g.
+/// Rows of the base wrench that the wheels' bound limits: the least-norm torques themselves, or, since the least
+/// peak is (max g - min g) / 2 with g the least-norm torques turned by the idle pattern, all halved differences.
 Matrix wheel_rows(const MecanumBase& base, WheelDistribution distribution) {
   Matrix torques(4, 3);
   for (int i = 0; i < 3; ++i) {

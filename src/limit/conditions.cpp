@@ -77,7 +77,7 @@ Condition rows_apart(const Robot& robot, const JointLimits& limits, int joint) {
                          0.9 * speed / limits.buffer(joint), " 1/s")};
 }
 
-/// A joint at full speed that is accelerated as hard as its row can brake must not cross its buffer between two samples.
+/// A joint at full speed that is accelerated as hard as its row can brake must not cross its buffer in a period.
 Condition second_order_buffer_is_wide(const Robot& robot, const JointLimits& limits, int joint, double dt) {
   const std::string& name = robot.joint_names()[static_cast<std::size_t>(joint)];
   const JointLimitOptions& options = limits.options();

@@ -22,9 +22,9 @@ class TorqueBounds {
   Vector& acceleration_lower() { return acceleration_lower_; }
   Vector& acceleration_upper() { return acceleration_upper_; }
 
-  /// What the limits (and the bias) ask for, `first_*`, and the whole command, as accelerations and as torques (n each),
-  /// at yaw angle `yaw` of the base [rad]. Scales `acceleration` and `torque`; clips `first_torque` where it is beyond a
-  /// bound by itself. The joints in the result are indices of joints; a wheel's bound counts for the base's x.
+  /// What the limits (and the bias) ask for, `first_*`, and the whole command, as accelerations and as torques
+  /// (n each), at yaw angle `yaw` of the base [rad]. Scales `acceleration` and `torque`; clips `first_torque` where
+  /// it is beyond a bound by itself. The result names joints; a wheel's bound counts for the base's x.
   CommandBounds apply(const Vector& first_acceleration, Vector& first_torque, double yaw,
                       Vector& acceleration, Vector& torque);
 
