@@ -69,17 +69,15 @@ Controller::Controller(const Robot& robot, const ControllerOptions& options)
       limit_command_(Vector::Zero(robot_.nv())),
       command_lower_(-robot_.velocity_limit()),
       command_upper_(robot_.velocity_limit()),
+      torque_bounds_(robot_, options_.wheel_distribution),
       motion_(Vector::Zero(robot_.nv())),
       limit_motion_(Vector::Zero(robot_.nv())),
       bias_y_(Vector::Zero(robot_.nv())),
       upper_activation_(Vector::Zero(robot_.nv())),
       lower_activation_(Vector::Zero(robot_.nv())) {
   require_period(options_.dt);
-  if (torque_mode()) {
-    if (!options_.joint_weights.empty()) {
-      throw ConfigError("joint_weights: torque mode weighs joints by the mass matrix; leave them out");
-    }
-    torque_bounds_.emplace(robot_, options_.wheel_distribution);
+  if (torque_mode() && !options_.joint_weights.empty()) {
+    throw ConfigError("joint_weights: torque mode weighs joints by the mass matrix; leave them out");
   }
   if (options_.limits.method == LimitMethod::potential_field) {
     field_.emplace(robot_, options_.limits.potential_field);
@@ -331,12 +329,12 @@ CommandBounds Controller::bound_torque() {
   command_.noalias() += whitening_.command() * solution_.y;
   if (uses_limit_rows(options_.limits.method)) {
     limits_.blended_acceleration_bounds(stack_.limit_activation, options_.dt,
-                                        torque_bounds_->acceleration_lower(),
-                                        torque_bounds_->acceleration_upper());
+                                        torque_bounds_.acceleration_lower(),
+                                        torque_bounds_.acceleration_upper());
   }
   const auto& base = robot_.base();
   const double yaw = base ? terms_.position()[base->options().joints[2]] : 0.0;
-  return torque_bounds_->apply(limit_motion_, limit_command_, yaw, motion_, command_);
+  return torque_bounds_.apply(limit_motion_, limit_command_, yaw, motion_, command_);
 }
 
 void Controller::report(const CommandBounds& bounds) {

@@ -61,7 +61,8 @@ int TorqueBounds::joint_of(int row) const {
   if (row < 2 * n) {
     return row < 0 ? row : row % n;
   }
-  return robot_.base()->options().joints[0];
+  const std::optional<MecanumBase>& base = robot_.base();
+  return base ? base->options().joints[0] : -1;
 }
 
 CommandBounds TorqueBounds::apply(const Vector& first_acceleration, Vector& first_torque, double yaw,

@@ -106,7 +106,7 @@ class Controller {
   Vector limit_command_;
   Vector command_lower_;
   Vector command_upper_;
-  std::optional<TorqueBounds> torque_bounds_;
+  TorqueBounds torque_bounds_;
   Vector motion_;        // velocity or acceleration that the last command asked for
   Vector limit_motion_;  // its part that serves the limits alone
   Vector bias_y_;        // L^-1 h
