@@ -1,3 +1,5 @@
+#include "../common/require_positive.hpp"
+
 #include <tope/common/error.hpp>
 #include <tope/law/smooth_step.hpp>
 #include <tope/law/unilateral.hpp>
@@ -34,17 +36,11 @@ Unilateral::Unilateral(const Stack& stack, const Options& options)
       upper_(stack.size()),
       no_rows_(0, stack.size()),
       no_residual_(0) {
-  const auto require_positive = [](const char* name, double value) {
-    if (!(std::isfinite(value) && value > 0.0)) {
-      throw ConfigError(std::string("unilateral: ") + name + " must be positive, got " +
-                        std::to_string(value));
-    }
-  };
-  require_positive("damping", options.damping);
-  require_positive("fine_damping", options.fine_damping);
-  require_positive("fine_below", options.fine_below);
-  require_positive("lock", options.lock);
-  require_positive("headroom", options.headroom);
+  require_positive("unilateral: damping", options.damping);
+  require_positive("unilateral: fine_damping", options.fine_damping);
+  require_positive("unilateral: fine_below", options.fine_below);
+  require_positive("unilateral: lock", options.lock);
+  require_positive("unilateral: headroom", options.headroom);
   if (options.fine_damping > options.damping) {
     throw ConfigError("unilateral: fine_damping " + std::to_string(options.fine_damping) +
                       " must not exceed damping " + std::to_string(options.damping));

@@ -1,3 +1,5 @@
+#include "../common/require_positive.hpp"
+
 #include <tope/common/error.hpp>
 #include <tope/limit/joint_limits.hpp>
 
@@ -6,12 +8,6 @@
 
 namespace tope {
 namespace {
-
-void require_positive(const std::string& what, double value) {
-  if (!std::isfinite(value) || value <= 0.0) {
-    throw ConfigError("limits: " + what + " must be positive and finite, got " + std::to_string(value));
-  }
-}
 
 constexpr double kEnvelopeRounding = 0.1;  // of v_max: radius of the envelope's corner
 
@@ -31,12 +27,12 @@ JointLimits::JointLimits(const Robot& robot, const JointLimitOptions& options)
       near_upper_(static_cast<std::size_t>(robot.nv()), 0),
       near_lower_(static_cast<std::size_t>(robot.nv()), 0),
       engagement_scale_(options.gain) {
-  require_positive("buffer", options.buffer);
-  require_positive("gain", options.gain);
-  require_positive("servo_gain", options.servo_gain);
-  require_positive("margin", options.margin);
+  require_positive("limits: buffer", options.buffer);
+  require_positive("limits: gain", options.gain);
+  require_positive("limits: servo_gain", options.servo_gain);
+  require_positive("limits: margin", options.margin);
   for (const auto& [joint, buffer] : options.buffers) {
-    require_positive("buffer of " + joint, buffer);
+    require_positive("limits: buffer of " + joint, buffer);
     buffer_[robot.joint_index(joint)] = buffer;
   }
   for (int j = 0; j < size(); ++j) {

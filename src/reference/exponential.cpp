@@ -1,4 +1,4 @@
-#include "gain.hpp"
+#include "../common/require_positive.hpp"
 
 #include <tope/reference/exponential.hpp>
 
