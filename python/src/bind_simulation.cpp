@@ -43,16 +43,11 @@ nb::dict describe_task(const ScenarioTask& task) {
   return entry;
 }
 
-const Vector& command_bound(const Scenario& scenario) {
-  return scenario.controller.mode == Mode::torque ? scenario.robot->effort_limit()
-                                                  : scenario.robot->velocity_limit();
-}
-
 nb::dict describe_scenario(const Scenario& scenario) {
   const JointLimits limits(*scenario.robot, scenario.controller.limits.rows);
   nb::list joints;
   for (int j = 0; j < scenario.robot->nv(); ++j) {
-    joints.append(describe_joint(*scenario.robot, limits, command_bound(scenario), j));
+    joints.append(describe_joint(*scenario.robot, limits, scenario.command_bound(), j));
   }
   nb::list tasks;
   for (const ScenarioTask& task : scenario.tasks) {
@@ -106,7 +101,7 @@ nb::dict describe_summary(const Scenario& scenario, const Summary& summary) {
   entry["scenario"] = describe_scenario(scenario);
   entry["max_limit_violation"] = by_joint(robot, summary.limit_violation, ones);
   entry["max_command_jump"] = by_joint(robot, summary.command_jump, ones);
-  entry["command_variation"] = by_joint(robot, summary.command_variation, command_bound(scenario));
+  entry["command_variation"] = by_joint(robot, summary.command_variation, scenario.command_bound());
   entry["buffer_time"] = by_joint(robot, summary.buffer_time, ones);
   entry["task_error"] = errors;
   entry["time_to_goal"] = optional_number(summary.time_to_goal);

@@ -52,8 +52,8 @@ bool JointLimits::limited(int joint) const {
 }
 
 void JointLimits::update(const VectorArg& q) {
-  double furthest = 0.0;
   beyond_ = -1;
+  furthest_beyond_ = 0.0;
   engagement_scale_ = options_.gain;
   for (int j = 0; j < size(); ++j) {
     const double to_upper = upper_[j] - q[j];
@@ -64,14 +64,21 @@ void JointLimits::update(const VectorArg& q) {
     target_[j] = std::isfinite(distance) ? side_[j] * options_.gain * (distance - buffer_[j]) : 0.0;
 
     const double v_max = velocity_limit_[j];
-    near_upper_[static_cast<std::size_t>(j)] = options_.gain * (to_upper - options_.margin) < v_max ? 1 : 0;
-    near_lower_[static_cast<std::size_t>(j)] = options_.gain * (to_lower - options_.margin) < v_max ? 1 : 0;
     motion_upper_[j] = std::clamp(options_.gain * (to_upper - options_.margin), -0.5 * v_max, v_max);
     motion_lower_[j] = -std::clamp(options_.gain * (to_lower - options_.margin), -0.5 * v_max, v_max);
-    if (-distance > furthest) {
-      furthest = -distance;
-      beyond_ = j;
-    }
+    note_distances(j, to_upper, to_lower);
+  }
+}
+
+/// What both orders keep of a joint's distances to its limits.
+void JointLimits::note_distances(int joint, double to_upper, double to_lower) {
+  const auto k = static_cast<std::size_t>(joint);
+  near_upper_[k] = options_.gain * (to_upper - options_.margin) < velocity_limit_[joint] ? 1 : 0;
+  near_lower_[k] = options_.gain * (to_lower - options_.margin) < velocity_limit_[joint] ? 1 : 0;
+  const double excess = -std::min(to_upper, to_lower);
+  if (excess > furthest_beyond_) {
+    furthest_beyond_ = excess;
+    beyond_ = joint;
   }
 }
 
@@ -95,8 +102,8 @@ double JointLimits::allowed_acceleration(int joint, double distance, double spee
 }
 
 void JointLimits::update_second_order(const VectorArg& q, const VectorArg& v) {
-  double furthest = 0.0;
   beyond_ = -1;
+  furthest_beyond_ = 0.0;
   for (int j = 0; j < size(); ++j) {
     const double to_upper = upper_[j] - q[j];
     const double to_lower = q[j] - lower_[j];
@@ -119,14 +126,7 @@ void JointLimits::update_second_order(const VectorArg& q, const VectorArg& v) {
     }
     motion_upper_[j] = allowed_acceleration(j, to_upper - options_.margin, v[j], 0.0);
     motion_lower_[j] = -allowed_acceleration(j, to_lower - options_.margin, -v[j], 0.0);
-    near_upper_[static_cast<std::size_t>(j)] =
-        options_.gain * (to_upper - options_.margin) < velocity_limit_[j] ? 1 : 0;
-    near_lower_[static_cast<std::size_t>(j)] =
-        options_.gain * (to_lower - options_.margin) < velocity_limit_[j] ? 1 : 0;
-    if (-std::min(to_upper, to_lower) > furthest) {
-      furthest = -std::min(to_upper, to_lower);
-      beyond_ = j;
-    }
+    note_distances(j, to_upper, to_lower);
   }
   engagement_scale_ = options_.gain * options_.servo_gain;
 }

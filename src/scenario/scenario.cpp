@@ -212,6 +212,10 @@ void add_notices(const Robot& robot, Scenario& scenario) {
 
 }  // namespace
 
+const Vector& Scenario::command_bound() const {
+  return controller.mode == Mode::torque ? robot->effort_limit() : robot->velocity_limit();
+}
+
 Scenario Scenario::load(const std::filesystem::path& file,
                         const std::map<std::string, std::string>& overrides) {
   const YamlReader yaml = YamlReader::load(file, overrides);

@@ -43,12 +43,6 @@ std::unique_ptr<Plant> make_plant(const Scenario& scenario) {
   return std::make_unique<Kinematic>(*scenario.robot);
 }
 
-/// Bound of each joint's command (n).
-const Vector& command_bound(const Scenario& scenario) {
-  return scenario.controller.mode == Mode::torque ? scenario.robot->effort_limit()
-                                                  : scenario.robot->velocity_limit();
-}
-
 std::vector<Metrics::TaskInfo> task_infos(const Scenario& scenario) {
   std::vector<Metrics::TaskInfo> infos;
   infos.reserve(scenario.tasks.size());
@@ -90,7 +84,7 @@ Summary Simulation::run() {
   const auto cycles = static_cast<int>(std::lround(scenario_.duration / dt));
   const int progress_every = std::max(1, cycles / kProgressSteps);
   const JointLimits& limits = controller_.limits();
-  Metrics metrics(limits.lower(), limits.upper(), buffers(limits), command_bound(scenario_),
+  Metrics metrics(limits.lower(), limits.upper(), buffers(limits), scenario_.command_bound(),
                   task_infos(scenario_), cycles, dt);
   plant_->reset(scenario_.initial);
   Vector u = Vector::Zero(scenario_.robot->nv());

@@ -91,6 +91,7 @@ class JointLimits {
   Envelope envelope(int joint, double distance) const;
   /// Acceleration allowed towards a limit at `distance` and approach speed `speed`, `slack` below the envelope.
   double allowed_acceleration(int joint, double distance, double speed, double slack) const;
+  void note_distances(int joint, double to_upper, double to_lower);
 
   JointLimitOptions options_;
   Vector lower_;
@@ -106,6 +107,7 @@ class JointLimits {
   std::vector<char> near_lower_;
   double engagement_scale_;  // slack per buffer at which engagement() begins
   int beyond_ = -1;
+  double furthest_beyond_ = 0.0;  // how far that joint is beyond its limit
 };
 
 }  // namespace tope

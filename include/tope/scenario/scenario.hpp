@@ -35,6 +35,9 @@ struct Scenario {
   std::vector<ScenarioTask> tasks;
   std::vector<std::string> notices;  ///< what was added or is worth knowing, a sentence each
 
+  /// Bound of each joint's command (n): of its speed, or of its torque in torque mode.
+  const Vector& command_bound() const;
+
   /// Reads a file, with "--set" overrides (dotted key -> YAML value). Errors: ConfigError naming file, line
   /// and key.
   static Scenario load(const std::filesystem::path& file,
