@@ -1,8 +1,8 @@
 """Run: make campaign-torque-goals.
 
-A hundred random goals in torque mode (seed 42), many of them out of reach because the base is blocked: does the
-largest jump of the torques fall with dt? Ten times shorter cycles divide the largest jump of a continuous command by
-ten.
+A hundred random goals in torque mode (seed 42), many of them out of reach because the base is blocked: does
+the largest jump of the torques fall with dt? Ten times shorter cycles divide the largest jump of a continuous
+command by ten.
 """
 
 import argparse
@@ -123,9 +123,7 @@ def main() -> None:
     with ProcessPoolExecutor() as pool:
         for method in arguments.methods.split(","):
             outcomes = pool.map(partial(run, method=method, extra=extra), range(arguments.count))
-            results[method] = list(
-                track(outcomes, total=arguments.count, description=method, transient=True)
-            )
+            results[method] = list(track(outcomes, total=arguments.count, description=method, transient=True))
             table.add_row(*row(method, results[method]))
     console = Console()
     console.print(table)

@@ -25,8 +25,8 @@ std::size_t choice(const std::string& what, const std::string& value, const std:
 using OptionalNumber = std::optional<double>;
 
 /// The poles that both pairs of arguments stand for; `lambda_p` and `lambda_v` are the paper's.
-void set_servo(JointLimitOptions& rows, OptionalNumber gain, OptionalNumber servo_gain, OptionalNumber lambda_p,
-               OptionalNumber lambda_v) {
+void set_servo(JointLimitOptions& rows, OptionalNumber gain, OptionalNumber servo_gain,
+               OptionalNumber lambda_p, OptionalNumber lambda_v) {
   rows.gain = gain;
   rows.servo_gain = servo_gain.value_or(rows.servo_gain);
   if (!lambda_p && !lambda_v) {
@@ -34,7 +34,8 @@ void set_servo(JointLimitOptions& rows, OptionalNumber gain, OptionalNumber serv
   }
   if (gain || servo_gain || !lambda_p || !lambda_v) {
     throw ConfigError(
-        "limits: give gain and servo_gain, or lambda_p and lambda_v, whose poles they are: one complete pair");
+        "limits: give gain and servo_gain, or lambda_p and lambda_v, whose poles they are: one complete "
+        "pair");
   }
   const ServoGains gains = ServoGains::from_paper(*lambda_p, *lambda_v);
   rows.gain = gains.gain;
@@ -90,8 +91,9 @@ void bind_options(nb::module_& module) {
           "buffer"_a = JointLimitOptions{}.buffer, "gain"_a = nb::none(),
           "margin"_a = JointLimitOptions{}.margin, "ramp"_a = "raised_cosine",
           "buffers"_a = std::map<std::string, double>{}, "servo_gain"_a = nb::none(),
-          "lambda_p"_a = nb::none(), "lambda_v"_a = nb::none(), "measure"_a = "predicted", "unilateral"_a = UnilateralOptions{},
-          "potential_field"_a = PotentialFieldOptions{}, "enforce_conditions"_a = true);
+          "lambda_p"_a = nb::none(), "lambda_v"_a = nb::none(), "measure"_a = "predicted",
+          "unilateral"_a = UnilateralOptions{}, "potential_field"_a = PotentialFieldOptions{},
+          "enforce_conditions"_a = true);
 }
 
 void bind_status(nb::module_& module) {
@@ -183,6 +185,9 @@ void bind_controller(nb::module_& module) {
           },
           "handle"_a, "Error of a task as of the last update.")
       .def_prop_ro("status", &Controller::status)
+      .def_prop_ro(
+          "limit_gain", [](const Controller& controller) { return controller.limits().gain(); },
+          "Gain of the limits [1/s]: as given, or as chosen for the mode and the drives.")
       .def_prop_ro(
           "status_text",
           [](const Controller& controller) { return describe(controller.status(), controller.robot()); })

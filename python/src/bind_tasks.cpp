@@ -110,7 +110,8 @@ void bind_references(nb::module_& module) {
                 PredefinedTime::Options{.duration = duration, .gain = gain, .replan_over = replan_over});
           },
           "duration"_a, nb::kw_only(), "gain"_a = PredefinedTime::Options{}.gain, "replan_over"_a = 0.0,
-          "`replan_over` [s]: least time of the plan made anew after something held the task back; 0: none is made.");
+          "`replan_over` [s]: least time of the plan made anew after something held the task back; 0: none "
+          "is made.");
 }
 
 }  // namespace

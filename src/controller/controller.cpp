@@ -58,9 +58,10 @@ double require_period(double dt) {
 void require_speed_limits(const Robot& robot, const JointLimits& limits) {
   for (int j = 0; j < robot.nv(); ++j) {
     if (limits.limited(j) && !std::isfinite(robot.velocity_limit()[j])) {
-      throw ConfigError("velocity_limit: " + robot.joint_names()[static_cast<std::size_t>(j)] +
-                        " has position limits but no speed limit: torque mode cannot tell how hard it must brake; "
-                        "set one");
+      throw ConfigError(
+          "velocity_limit: " + robot.joint_names()[static_cast<std::size_t>(j)] +
+          " has position limits but no speed limit: torque mode cannot tell how hard it must brake; "
+          "set one");
     }
   }
 }

@@ -30,7 +30,8 @@ std::string sentence(Event event, const Status& status, const Robot& robot) {
       text << joint_name(robot, status.beyond_joint) << " is beyond its limit and is led back.";
       break;
     case Event::held:
-      text << "A limit, a bound or a higher level holds back a task with a predefined time, which does not hold.";
+      text << "A limit, a bound or a higher level holds back a task with a predefined time, which does not "
+              "hold.";
       break;
     case Event::near_flip:
       text << "An orientation error is within 0.05 rad of pi, where its direction flips.";

@@ -130,12 +130,13 @@ Condition drive_can_brake(const Robot& robot, const JointLimits& limits, LimitMe
                         " <= (effort - |gravity|) / inertia in the worst pose",
           .value = limits.gain() * speed,
           .bound = authority,
-          .advice = authority > 0.0
-                        ? text("lower limits.gain to at most ", authority / speed, " 1/s",
-                               rows ? ", or limits.servo_gain, or the buffer" : "", " or the speed limit of ", name)
-                        : text("in some pose the drive of ", name,
-                               " cannot hold the robot against gravity; raise its effort limit or narrow the "
-                               "position limits")};
+          .advice =
+              authority > 0.0
+                  ? text("lower limits.gain to at most ", authority / speed, " 1/s",
+                         rows ? ", or limits.servo_gain, or the buffer" : "", " or the speed limit of ", name)
+                  : text("in some pose the drive of ", name,
+                         " cannot hold the robot against gravity; raise its effort limit or narrow the "
+                         "position limits")};
 }
 
 }  // namespace

@@ -52,9 +52,9 @@ void require_positive_definite(const Robot& robot, const Matrix& mass_matrix) {
   }
   Eigen::Index joint = 0;
   mass_matrix.diagonal().minCoeff(&joint);
-  throw ConfigError("torque mode needs the inertia of every link: " +
-                    robot.joint_names()[static_cast<std::size_t>(joint)] +
-                    " moves no mass; give the links beyond it an <inertial> in the URDF, or the joint a rotor_inertia");
+  throw ConfigError(
+      "torque mode needs the inertia of every link: " + robot.joint_names()[static_cast<std::size_t>(joint)] +
+      " moves no mass; give the links beyond it an <inertial> in the URDF, or the joint a rotor_inertia");
 }
 
 }  // namespace

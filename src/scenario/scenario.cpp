@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 namespace tope {
 namespace {
@@ -72,7 +73,8 @@ void read_servo(const YamlReader& yaml, JointLimitOptions& options) {
   }
   for (const char* key : {"gain", "servo_gain"}) {
     if (yaml.has(key)) {
-      yaml.fail(key, "gain and servo_gain are the poles of lambda_p and lambda_v: give one pair or the other");
+      yaml.fail(key,
+                "gain and servo_gain are the poles of lambda_p and lambda_v: give one pair or the other");
     }
   }
   const double lambda_p = yaml.positive("lambda_p");
@@ -216,6 +218,32 @@ void add_lowest_level(const Robot& robot, Scenario& scenario) {
       std::to_string(lowest + 1) + ".");
 }
 
+/// How the simulated robot differs from the one that the controller believes in; empty when it does not.
+std::string model_errors(const RigidBodyOptions& plant) {
+  std::ostringstream text;
+  const auto separate = [&] { text << (text.tellp() > 0 ? ", " : ""); };
+  if (plant.inertia_scale != 1.0) {
+    text << "links " << plant.inertia_scale << " times as heavy";
+  }
+  if (plant.payload > 0.0) {
+    separate();
+    text << plant.payload << " kg at " << plant.payload_frame;
+  }
+  if (plant.delay > 0.0) {
+    separate();
+    text << "commands " << 1e3 * plant.delay << " ms late";
+  }
+  if (plant.friction) {
+    separate();
+    text << "friction in the joints";
+  }
+  if (plant.torque_noise > 0.0) {
+    separate();
+    text << "torque noise of " << 100.0 * plant.torque_noise << " % of the effort";
+  }
+  return text.str();
+}
+
 void add_notices(const Robot& robot, Scenario& scenario) {
   const ControllerOptions& options = scenario.controller;
   if (options.limits.method == LimitMethod::none) {
@@ -232,6 +260,9 @@ void add_notices(const Robot& robot, Scenario& scenario) {
   if (!options.limits.enforce_conditions) {
     scenario.notices.emplace_back(
         "Safety inequalities are reported, not enforced: limits.conditions is report.");
+  }
+  if (const std::string errors = model_errors(scenario.rigid_body); !errors.empty()) {
+    scenario.notices.push_back("The robot is not the one that the controller believes in: " + errors + ".");
   }
   if (options.mode == Mode::torque && options.null_space == NullSpace::compensated) {
     add_lowest_level(robot, scenario);

@@ -17,17 +17,17 @@
 namespace tope::test {
 namespace {
 
-constexpr double kDuration = 3.0;     // promised [s]
-constexpr double kReleaseAt = 2.8;    // s
-constexpr double kReplanOver = 2.0;   // s
-constexpr double kFade = 0.2;         // of the task that holds it [s]
+constexpr double kDuration = 3.0;    // promised [s]
+constexpr double kReleaseAt = 2.8;   // s
+constexpr double kReplanOver = 2.0;  // s
+constexpr double kFade = 0.2;        // of the task that holds it [s]
 constexpr double kNewArrival = kReleaseAt + kFade + kReplanOver;
 
 struct Outcome {
-  int held = 0;                 // cycles
-  bool held_after = false;      // once it was free
-  double peak = 0.0;            // largest command after the release, share of the bound
-  double largest_jump = 0.0;    // of the command after the release, share of the bound
+  int held = 0;               // cycles
+  bool held_after = false;    // once it was free
+  double peak = 0.0;          // largest command after the release, share of the bound
+  double largest_jump = 0.0;  // of the command after the release, share of the bound
   double error_at_arrival = 0.0;
 };
 
@@ -45,9 +45,9 @@ Outcome pursue(Mode mode, double replan_over, double dt) {
   terms.update(q, Vector::Zero(8));
   const Vector3 here = terms.frame_position(robot.frame_index("ee"));
   const TaskHandle anchor = controller.add(1, FramePosition(robot, "ee", here));
-  const TaskHandle reach =
-      controller.add(2, FramePosition(robot, "ee", here + Vector3(0.3, 0.1, -0.05),
-                                      PredefinedTime({.duration = kDuration, .gain = 10.0, .replan_over = replan_over})));
+  const TaskHandle reach = controller.add(
+      2, FramePosition(robot, "ee", here + Vector3(0.3, 0.1, -0.05),
+                       PredefinedTime({.duration = kDuration, .gain = 10.0, .replan_over = replan_over})));
   controller.add(3, Damping(robot));
   const Vector& bound = mode == Mode::torque ? robot.effort_limit() : robot.velocity_limit();
 
@@ -66,7 +66,8 @@ Outcome pursue(Mode mode, double replan_over, double dt) {
     outcome.held += controller.status().has(Event::held) ? 1 : 0;
     if (i > release) {
       outcome.peak = std::max(outcome.peak, (u - resting).cwiseQuotient(bound).cwiseAbs().maxCoeff());
-      outcome.largest_jump = std::max(outcome.largest_jump, (u - last).cwiseQuotient(bound).cwiseAbs().maxCoeff());
+      outcome.largest_jump =
+          std::max(outcome.largest_jump, (u - last).cwiseQuotient(bound).cwiseAbs().maxCoeff());
     }
     outcome.held_after = controller.status().has(Event::held);
     plant->step(u, dt);

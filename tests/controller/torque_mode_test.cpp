@@ -20,9 +20,7 @@ namespace tope::test {
 namespace {
 
 ControllerOptions options(LimitMethod method, double dt = 1e-3) {
-  return {.mode = Mode::torque,
-          .dt = dt,
-          .limits = {.method = method}};
+  return {.mode = Mode::torque, .dt = dt, .limits = {.method = method}};
 }
 
 Vector start() {

@@ -190,7 +190,8 @@ BOOST_AUTO_TEST_CASE(blended_rows_keep_the_limit_at_the_conditions_edge) {
   for (const double dt : {1e-3, 5e-3}) {
     JointLimits limits(robot, {.buffer = 0.3, .gain = kGain, .servo_gain = kServo});
     double buffer = 0.3;
-    for (const Condition& condition : torque_conditions(robot, limits, LimitMethod::chain, 0.5, dt, kStrong)) {
+    for (const Condition& condition :
+         torque_conditions(robot, limits, LimitMethod::chain, 0.5, dt, kStrong)) {
       if (condition.joint == "arm_joint_5" && condition.name == "buffer wide enough for the period") {
         BOOST_TEST(condition.holds());
         buffer = 1.02 * condition.value;
@@ -205,7 +206,8 @@ BOOST_AUTO_TEST_CASE(conditions_name_what_fails) {
   const Robot robot = youbot();
   JointLimits limits(robot, {.buffer = 0.01, .gain = kGain, .servo_gain = kServo});
   bool named = false;
-  for (const Condition& condition : torque_conditions(robot, limits, LimitMethod::chain, 0.5, 0.02, kStrong)) {
+  for (const Condition& condition :
+       torque_conditions(robot, limits, LimitMethod::chain, 0.5, 0.02, kStrong)) {
     named = named || (!condition.holds() && condition.joint == "arm_joint_2" &&
                       condition.advice.find("raise the buffer of arm_joint_2") != std::string::npos);
   }

@@ -20,7 +20,8 @@ BOOST_AUTO_TEST_CASE(poles_have_the_pairs_sum_and_product) {
 
 BOOST_AUTO_TEST_CASE(underdamped_pairs_are_refused) {
   check_error([] { ServoGains::from_paper(100.0, 10.0); },
-              {"lambda_v^2 < 4 lambda_p", "100.0", "400.0", "raise lambda_v to at least 20", "lambda_p to at most 25"});
+              {"lambda_v^2 < 4 lambda_p", "100.0", "400.0", "raise lambda_v to at least 20",
+               "lambda_p to at most 25"});
   check_error([] { ServoGains::from_paper(-1.0, 10.0); }, {"lambda_p", "positive", "-1"});
   check_error([] { ServoGains::from_paper(1.0, 0.0); }, {"lambda_v", "positive", "0.0"});
 }

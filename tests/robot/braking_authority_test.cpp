@@ -17,8 +17,9 @@ namespace {
 
 /// A link on a horizontal axis with its mass [kg] half a metre away; `inertial` false: the link has none.
 std::string pendulum(double mass, bool inertial = true) {
-  const std::string body = "<inertial><origin xyz=\"0.5 0 0\"/><mass value=\"" + std::to_string(mass) +
-                           "\"/><inertia ixx=\"0\" iyy=\"0.02\" izz=\"0\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial>";
+  const std::string body =
+      "<inertial><origin xyz=\"0.5 0 0\"/><mass value=\"" + std::to_string(mass) +
+      "\"/><inertia ixx=\"0\" iyy=\"0.02\" izz=\"0\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial>";
   return R"(<robot name="pendulum"><link name="base"/><link name="arm">)" + (inertial ? body : "") +
          R"(</link><joint name="swing" type="revolute"><parent link="base"/><child link="arm"/><axis xyz="0 1 0"/>
             <limit lower="-1.5" upper="1.5" velocity="2" effort="20"/></joint></robot>)";
@@ -66,11 +67,13 @@ BOOST_AUTO_TEST_CASE(few_poses_of_the_youbot_are_worse) {
 }
 
 BOOST_AUTO_TEST_CASE(missing_inertia_is_refused_by_name) {
-  check_error([] { braking_authority(from_text(pendulum(1.0, false))); },
-              {"torque mode needs the inertia of every link", "swing moves no mass", "<inertial>", "rotor_inertia"});
+  check_error(
+      [] { braking_authority(from_text(pendulum(1.0, false))); },
+      {"torque mode needs the inertia of every link", "swing moves no mass", "<inertial>", "rotor_inertia"});
   RobotConfig config;
   config.rotor_inertia["swing"] = 0.1;
-  BOOST_TEST(braking_authority(from_text(pendulum(1.0, false), config))[0] == 200.0, boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(braking_authority(from_text(pendulum(1.0, false), config))[0] == 200.0,
+             boost::test_tools::tolerance(1e-12));
 }
 
 BOOST_AUTO_TEST_CASE(massless_tip_is_refused_by_name) {

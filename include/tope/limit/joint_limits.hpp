@@ -23,8 +23,8 @@ struct JointLimitOptions {
   /// lambda, gamma_1: speed allowed or asked for per distance [1/s]. Unset: JointLimits::default_gain; a controller in
   /// torque mode takes less where the motors could not brake.
   std::optional<double> gain{};
-  Ramp ramp = Ramp::raised_cosine;          ///< how activations rise across the buffer
-  double servo_gain = 10.0;  ///< gamma_2: how fast speed returns below the envelope, torque mode [1/s]
+  Ramp ramp = Ramp::raised_cosine;  ///< how activations rise across the buffer
+  double servo_gain = 10.0;         ///< gamma_2: how fast speed returns below the envelope, torque mode [1/s]
   Measure measure = Measure::predicted;  ///< of the activations in torque mode
   double margin = 1e-3;                  ///< m: distance kept from the limit by the unilateral law [rad or m]
 };
