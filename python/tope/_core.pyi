@@ -180,6 +180,9 @@ class Scenario:
 
     def describe(self) -> dict: ...
 
+    def controller(self) -> Controller:
+        """A controller as the scenario describes it, with its tasks."""
+
     @property
     def initial(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]: ...
 
