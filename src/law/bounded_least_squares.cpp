@@ -8,8 +8,9 @@ namespace tope {
 namespace {
 
 constexpr double kFeasibility = 1e-10;  // a row counts as violated beyond this, in the units of the bounds
-constexpr double kDependence = 1e-10;   // a held row whose Schur pivot is this small beside its diagonal is dependent
-constexpr int kRounds = 6;              // of the primal-dual method, before the dual one takes over
+constexpr double kDependence =
+    1e-10;                  // a held row whose Schur pivot is this small beside its diagonal is dependent
+constexpr int kRounds = 6;  // of the primal-dual method, before the dual one takes over
 
 }  // namespace
 
@@ -123,8 +124,8 @@ void BoundedLeastSquares::gather(const ActiveRows& active) {
 }
 
 /// The minimum with the held rows at their bounds. False when they depend on each other.
-bool BoundedLeastSquares::hold(const Eigen::Ref<const Matrix>& a, double mu, const Eigen::Ref<const Matrix>& d,
-                               const Vector& lower, const Vector& upper) {
+bool BoundedLeastSquares::hold(const Eigen::Ref<const Matrix>& a, double mu,
+                               const Eigen::Ref<const Matrix>& d, const Vector& lower, const Vector& upper) {
   const auto count = static_cast<Eigen::Index>(held_.size());
   if (count > unknowns_) {
     return false;
@@ -180,8 +181,8 @@ bool BoundedLeastSquares::settle(const Vector& lower, const Vector& upper, Activ
 }
 
 bool BoundedLeastSquares::fall_back(const Eigen::Ref<const Matrix>& a, const VectorArg& r, double mu,
-                                    const Eigen::Ref<const Matrix>& d, const Vector& lower, const Vector& upper,
-                                    ActiveRows& active) {
+                                    const Eigen::Ref<const Matrix>& d, const Vector& lower,
+                                    const Vector& upper, ActiveRows& active) {
   padded_d_.leftCols(unknowns_) = d;
   padded_d_.rightCols(padded_d_.cols() - unknowns_).setZero();
   const bool solved = dual_.solve(a, r, mu, padded_d_, lower, upper);

@@ -30,8 +30,8 @@ DualActiveSet::DualActiveSet(int n, int constraints)
       multipliers_(Vector::Zero(constraints)),
       row_value_(constraints) {}
 
-bool DualActiveSet::solve(const Eigen::Ref<const Matrix>& a, const VectorArg& r, double mu,
-                                const Matrix& d, const Vector& lower, const Vector& upper) {
+bool DualActiveSet::solve(const Eigen::Ref<const Matrix>& a, const VectorArg& r, double mu, const Matrix& d,
+                          const Vector& lower, const Vector& upper) {
   start(a, r, mu);
   iterations_left_ = kIterationsPerUnknown * static_cast<int>(z_.size());
   bool solved = true;
@@ -68,8 +68,7 @@ void DualActiveSet::start(const Eigen::Ref<const Matrix>& a, const VectorArg& r,
   active_ = 0;
 }
 
-DualActiveSet::Violation DualActiveSet::worst_violation(const Vector& lower,
-                                                                    const Vector& upper) const {
+DualActiveSet::Violation DualActiveSet::worst_violation(const Vector& lower, const Vector& upper) const {
   Violation worst{.row = -1, .sign = 0.0, .value = kFeasibility};
   for (Eigen::Index i = 0; i < row_value_.size(); ++i) {
     if (row_value_[i] - upper[i] > worst.value) {
@@ -85,7 +84,7 @@ DualActiveSet::Violation DualActiveSet::worst_violation(const Vector& lower,
 /// Moves along the active rows until the violated one holds, dropping rows whose multiplier would change
 /// sign.
 bool DualActiveSet::satisfy(const Violation& violation, const Matrix& d, const Vector& lower,
-                                  const Vector& upper) {
+                            const Vector& upper) {
   const auto n = static_cast<int>(z_.size());
   const double bound = violation.sign > 0.0 ? upper[violation.row] : lower[violation.row];
   double multiplier = 0.0;

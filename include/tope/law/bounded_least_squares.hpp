@@ -29,7 +29,7 @@ class BoundedLeastSquares {
   bool solve(const Eigen::Ref<const Matrix>& a, const VectorArg& r, double mu,
              const Eigen::Ref<const Matrix>& d, const Vector& lower, const Vector& upper);
 
-  auto z() const { return z_.head(unknowns_); }  ///< (d)
+  auto z() const { return z_.head(unknowns_); }            ///< (d)
   const Vector& row_values() const { return row_value_; }  ///< D z (p)
   /// Lagrange multiplier of each row (p) in the half-squared problem: positive presses on the upper bound,
   /// negative on the lower one, zero elsewhere.
@@ -39,14 +39,15 @@ class BoundedLeastSquares {
   void factorise(const Eigen::Ref<const Matrix>& a, double mu);
   template <typename Out>
   void apply_inverse(const Eigen::Ref<const Matrix>& a, double mu, Out&& z);
-  bool hold(const Eigen::Ref<const Matrix>& a, double mu, const Eigen::Ref<const Matrix>& d, const Vector& lower,
-            const Vector& upper);
+  bool hold(const Eigen::Ref<const Matrix>& a, double mu, const Eigen::Ref<const Matrix>& d,
+            const Vector& lower, const Vector& upper);
   bool settle(const Vector& lower, const Vector& upper, ActiveRows& active);
   void gather(const ActiveRows& active);
   bool fall_back(const Eigen::Ref<const Matrix>& a, const VectorArg& r, double mu,
-                 const Eigen::Ref<const Matrix>& d, const Vector& lower, const Vector& upper, ActiveRows& active);
+                 const Eigen::Ref<const Matrix>& d, const Vector& lower, const Vector& upper,
+                 ActiveRows& active);
 
-  int unknowns_ = 0;  // d
+  int unknowns_ = 0;      // d
   bool by_rows_ = false;  // factor_ is of A A^T + mu I (m x m), not of A^T A + mu I (d x d)
   Matrix factor_;         // lower Cholesky factor (n x n)
   Vector free_z_;         // minimum without bounds (n)

@@ -61,7 +61,7 @@ class Unilateral final : public StackLaw {
   bool whole_ = true;   // M is the identity
   Matrix open_;         // M (n x d)
   Matrix next_open_;
-  Matrix motion_;       // T M (n x d)
+  Matrix motion_;  // T M (n x d)
   Matrix next_motion_;
   Matrix task_;         // A M (m x d)
   Matrix task_gram_;    // A M M^T A^T (m x m)
