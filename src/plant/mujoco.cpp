@@ -1,0 +1,304 @@
+#include "mujoco_model.hpp"
+
+#include <tope/common/error.hpp>
+#include <tope/plant/mujoco.hpp>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace tope {
+namespace {
+
+constexpr double kIce = 0.02;              // friction of a wheel without grip
+constexpr double kPayloadRadius = 0.02;    // of the ball that is the payload [m]
+constexpr double kSphere = 2.0 / 5.0;      // inertia of a ball over m r^2
+constexpr double kStepTolerance = 1e-9;    // of a period that is a whole number of steps
+
+void require_interval(const char* fault, const Interval& interval) {
+  if (std::isnan(interval.start) || !(interval.duration > 0.0)) {
+    throw ConfigError("plant: faults: " + std::string(fault) + ": its duration must be positive [s]");
+  }
+}
+
+}  // namespace
+
+struct Mujoco::Simulator {
+  Simulator(const Robot& robot_, const MujocoOptions& options_, double period)
+      : robot(robot_),
+        options(options_),
+        dt(period),
+        model(robot, options),
+        data(model.make_data()),
+        sensors(robot, options.sensors, period),
+        command(Vector::Zero(robot.nv())),
+        q(Vector::Zero(robot.nq())),
+        v(Vector::Zero(robot.nv())),
+        stop_force(Vector::Zero(robot.nv())) {
+    mjModel& m = *model.get();
+    steps = static_cast<int>(std::ceil(dt / m.opt.timestep - kStepTolerance));
+    m.opt.timestep = dt / steps;
+    friction.assign(m.geom_friction, m.geom_friction + 3 * m.ngeom);
+    check_faults();
+  }
+
+  void check_faults() {
+    const MujocoFaults& faults = options.faults;
+    require_interval("lost_grip", faults.lost_grip);
+    require_interval("stall", faults.stall);
+    require_interval("payload", faults.payload);
+    require_interval("obstacle", faults.obstacle);
+    if (std::isfinite(faults.payload.start)) {
+      payload_body = model.find(mjOBJ_BODY, "payload");
+    }
+    if (std::isfinite(faults.obstacle.start)) {
+      obstacle_mocap = model.get()->body_mocapid[model.find(mjOBJ_BODY, "obstacle")];
+      if (obstacle_mocap < 0) {
+        throw ConfigError("plant: model: " + options.model.string() + ": body 'obstacle' is not a mocap body");
+      }
+    }
+  }
+
+  const std::array<int, 3>& base_joints() const { return robot.base()->options().joints; }
+  int base_joint(int i) const { return base_joints()[static_cast<std::size_t>(i)]; }
+
+  void place(const Vector& start) {
+    mj_resetData(model.get(), data.get());
+    mjtNum* pose = data->qpos + model.base_q();
+    const double yaw = start[base_joint(2)];
+    pose[0] = start[base_joint(0)];
+    pose[1] = start[base_joint(1)];
+    pose[3] = std::cos(0.5 * yaw);
+    pose[4] = pose[5] = 0.0;
+    pose[6] = std::sin(0.5 * yaw);
+    for (int j = 0; j < robot.nv(); ++j) {
+      if (model.hinge(j).joint >= 0) {
+        data->qpos[model.hinge(j).q] = start[j];
+      }
+    }
+    q = start;
+    v.setZero();
+  }
+
+  /// A servo's integrator starts at the torque that holds its joint.
+  void hold() {
+    mj_forward(model.get(), data.get());
+    for (int j = 0; j < robot.nv(); ++j) {
+      const MujocoModel::Hinge& hinge = model.hinge(j);
+      for (const int actuator : hinge.actuators) {
+        if (model.get()->actuator_dyntype[actuator] == mjDYN_INTEGRATOR) {
+          const double gain = model.get()->actuator_gainprm[mjNGAIN * actuator];
+          data->act[model.get()->actuator_actadr[actuator]] =
+              data->qpos[hinge.q] + data->qfrc_bias[hinge.v] / gain;
+        }
+      }
+    }
+  }
+
+  void drive(const MujocoModel::Hinge& hinge, double value) {
+    for (const int actuator : hinge.actuators) {
+      data->ctrl[model.get()->actuator_ctrladr[actuator]] = value;
+    }
+  }
+
+  /// Gives the command to the motors as the robot's own drives would: with what it knows of its heading.
+  void drive_all() {
+    const MecanumBase& base = *robot.base();
+    const double yaw = sensors.position()[base_joint(2)];
+    const MecanumBase::Wheels wheels =
+        options.drive == MujocoOptions::Drive::velocity
+            ? base.wheel_speeds(command, yaw)
+            : base.wheel_torques(base.base_wrench(command, yaw), options.wheel_distribution);
+    for (int i = 0; i < 4; ++i) {
+      drive(model.wheel(i), wheels[i]);
+    }
+    for (int j = 0; j < robot.nv(); ++j) {
+      drive(model.hinge(j), command[j]);
+    }
+  }
+
+  void apply_faults() {
+    const MujocoFaults& faults = options.faults;
+    set_grip(faults.lost_grip.contains(data->time));
+    set_payload(faults.payload.contains(data->time) ? faults.payload_mass : 0.0);
+    if (faults.obstacle.contains(data->time)) {
+      data->mocap_pos[3 * obstacle_mocap] += faults.obstacle_velocity * model.get()->opt.timestep;
+    }
+  }
+
+  void set_grip(bool lost) {
+    if (lost == grip_lost) {
+      return;
+    }
+    grip_lost = lost;
+    for (int geom = 0; geom < model.get()->ngeom; ++geom) {
+      if (model.wheel_of_geom(geom) == options.faults.lost_grip_wheel) {
+        const auto slide = static_cast<std::size_t>(3 * geom);
+        model.get()->geom_friction[slide] = lost ? kIce : friction[slide];
+      }
+    }
+  }
+
+  void set_payload(double mass) {
+    if (payload_body < 0 || mass == model.get()->body_mass[payload_body]) {
+      return;
+    }
+    model.get()->body_mass[payload_body] = mass;
+    for (int i = 0; i < 3; ++i) {
+      model.get()->body_inertia[3 * payload_body + i] = kSphere * mass * kPayloadRadius * kPayloadRadius;
+    }
+    const auto scratch = model.make_data();  // the model's derived constants need a state to work in
+    mj_setConst(model.get(), scratch.get());
+  }
+
+  void note_contacts() {
+    for (int row = 0; row < data->nefc; ++row) {
+      if (data->efc_type[row] == mjCNSTR_LIMIT_JOINT) {
+        note_stop(data->efc_id[row], data->efc_force[row]);
+      }
+    }
+    for (int i = 0; i < data->ncon; ++i) {
+      const mjContact& contact = data->contact[i];
+      const bool rolls = model.wheel_of_geom(contact.geom[0]) >= 0 || model.wheel_of_geom(contact.geom[1]) >= 0;
+      const bool on_floor = model.get()->geom_type[contact.geom[0]] == mjGEOM_PLANE;
+      if (!rolls || !on_floor) {
+        note_touch(contact, i);
+      }
+    }
+  }
+
+  void note_stop(int joint, double force) {
+    for (int j = 0; j < robot.nv(); ++j) {
+      if (model.hinge(j).joint == joint) {
+        stop_force[j] = std::max(stop_force[j], force);
+      }
+    }
+  }
+
+  void note_touch(const mjContact& contact, int index) {
+    std::array<mjtNum, 6> force{};
+    mj_contactForce(model.get(), data.get(), index, force.data());
+    const int* body = model.get()->geom_bodyid;
+    double& largest = touches[{body[contact.geom[0]], body[contact.geom[1]]}];
+    largest = std::max(largest, force[0]);
+  }
+
+  void advance() {
+    for (int i = 0; i < steps; ++i) {
+      apply_faults();
+      mj_step(model.get(), data.get());
+      note_contacts();
+    }
+    for (const mjtWarning warning : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC, mjWARN_BADCTRL}) {
+      if (data->warning[warning].number > 0) {
+        throw Error("plant: MuJoCo's simulation diverged at " + std::to_string(data->time) +
+                    " s: " + mju_warningText(warning, data->warning[warning].lastinfo));
+      }
+    }
+  }
+
+  void read_state() {
+    const mjtNum* pose = data->qpos + model.base_q();
+    const mjtNum* speed = data->qvel + model.base_v();
+    const double last_yaw = q[base_joint(2)];
+    const Matrix3 rotation = Eigen::Quaterniond(pose[3], pose[4], pose[5], pose[6]).toRotationMatrix();
+    const double heading = std::atan2(rotation(1, 0), rotation(0, 0));
+    for (int i = 0; i < 2; ++i) {
+      q[base_joint(i)] = pose[i];
+      v[base_joint(i)] = speed[i];
+    }
+    // past any full turn
+    q[base_joint(2)] = last_yaw + std::remainder(heading - last_yaw, 2.0 * std::numbers::pi);
+    v[base_joint(2)] = rotation.row(2).dot(Eigen::Map<const Vector3>(speed + 3));
+    for (int j = 0; j < robot.nv(); ++j) {
+      if (model.hinge(j).joint >= 0) {
+        q[j] = data->qpos[model.hinge(j).q];
+        v[j] = data->qvel[model.hinge(j).v];
+      }
+    }
+  }
+
+  MecanumBase::Wheels wheel_angles() const {
+    MecanumBase::Wheels angles;
+    for (int i = 0; i < 4; ++i) {
+      angles[i] = data->qpos[model.wheel(i).q];
+    }
+    return angles;
+  }
+
+  Robot robot;
+  MujocoOptions options;
+  double dt;
+  MujocoModel model;
+  std::unique_ptr<mjData, decltype(&mj_deleteData)> data;
+  Sensors sensors;
+  int steps = 1;  // a period
+  Vector command;
+  Vector q;
+  Vector v;
+  int payload_body = -1;
+  int obstacle_mocap = -1;
+  bool grip_lost = false;
+  std::vector<double> friction;                   // of every geom in the model as it was loaded
+  Vector stop_force;                              // largest, of each joint
+  std::map<std::pair<int, int>, double> touches;  // largest force between two bodies
+};
+
+Mujoco::Mujoco(const Robot& robot, const MujocoOptions& options, double dt)
+    : simulator_(std::make_unique<Simulator>(robot, options, dt)) {}
+
+Mujoco::~Mujoco() = default;
+
+void Mujoco::reset(const Vector& q) {
+  Simulator& s = *simulator_;
+  s.set_grip(false);
+  s.set_payload(0.0);
+  s.place(q);
+  s.hold();
+  s.command.setZero();
+  s.stop_force.setZero();
+  s.touches.clear();
+  s.sensors.reset(q, s.wheel_angles());
+}
+
+void Mujoco::step(const Vector& u, double /*dt*/) {
+  Simulator& s = *simulator_;
+  if (!s.options.faults.stall.contains(s.data->time)) {
+    s.command = u;
+  }
+  s.drive_all();
+  s.advance();
+  s.read_state();
+  s.sensors.read(s.q, s.wheel_angles());
+}
+
+const Vector& Mujoco::position() const { return simulator_->q; }
+const Vector& Mujoco::velocity() const { return simulator_->v; }
+const Vector& Mujoco::measured_position() const { return simulator_->sensors.position(); }
+const Vector& Mujoco::measured_velocity() const { return simulator_->sensors.velocity(); }
+
+std::map<std::string, double> Mujoco::contacts() const {
+  const Simulator& s = *simulator_;
+  std::map<std::string, double> largest;
+  for (int j = 0; j < s.robot.nv(); ++j) {
+    if (s.stop_force[j] > 0.0) {
+      largest[s.robot.joint_names()[static_cast<std::size_t>(j)] + " at its stop"] = s.stop_force[j];
+    }
+  }
+  for (const auto& [bodies, force] : s.touches) {
+    largest[s.model.name(mjOBJ_BODY, bodies.second) + " on " + s.model.name(mjOBJ_BODY, bodies.first)] = force;
+  }
+  return largest;
+}
+
+Vector3 Mujoco::site_position(const std::string& site) const {
+  const Simulator& s = *simulator_;
+  const int index = s.model.find(mjOBJ_SITE, site);
+  // mj_step leaves the sites where they were before its last step
+  mj_kinematics(s.model.get(), s.data.get());
+  return Eigen::Map<const Vector3>(s.data->site_xpos + 3 * index);
+}
+
+}  // namespace tope

@@ -1,0 +1,142 @@
+#include "mujoco_model.hpp"
+
+#include <tope/common/error.hpp>
+#include <tope/common/names.hpp>
+
+#include <algorithm>
+
+namespace tope {
+namespace {
+
+constexpr std::array<const char*, 4> kWheels{"wheel_fl", "wheel_fr", "wheel_bl", "wheel_br"};
+constexpr int kMotors = 0;  // actuator groups
+constexpr int kServos = 1;
+
+std::unique_ptr<mjModel, decltype(&mj_deleteModel)> load(const std::filesystem::path& file) {
+  if (!std::filesystem::is_regular_file(file)) {
+    throw ConfigError("plant: model: " + file.string() + ": no such file");
+  }
+  std::array<char, 1000> error{};
+  std::unique_ptr<mjModel, decltype(&mj_deleteModel)> model(
+      mj_loadXML(file.c_str(), nullptr, error.data(), static_cast<int>(error.size())), mj_deleteModel);
+  if (!model) {
+    std::string message = error.data();
+    std::replace(message.begin(), message.end(), '\n', ' ');
+    throw ConfigError("plant: model: " + file.string() + ": MuJoCo refuses it: " + message);
+  }
+  return model;
+}
+
+const char* kind_of(mjtObj type) {
+  switch (type) {
+    case mjOBJ_JOINT:
+      return "joint";
+    case mjOBJ_SITE:
+      return "site";
+    default:
+      return "body";
+  }
+}
+
+mjtSize count(const mjModel& model, mjtObj type) {
+  switch (type) {
+    case mjOBJ_JOINT:
+      return model.njnt;
+    case mjOBJ_SITE:
+      return model.nsite;
+    default:
+      return model.nbody;
+  }
+}
+
+}  // namespace
+
+MujocoModel::MujocoModel(const Robot& robot, const MujocoOptions& options)
+    : file_(options.model.string()), model_(load(options.model)), wheels_{} {
+  if (!robot.base()) {
+    throw ConfigError("plant: mujoco drives the base by its wheels, and the robot's file has no mecanum_base");
+  }
+  const bool torque = options.drive == MujocoOptions::Drive::torque;
+  const int group = torque ? kMotors : kServos;
+  model_->opt.disableactuator = 1 << (torque ? kServos : kMotors);
+  model_->opt.disableflags |= mjDSBL_AUTORESET;  // a run that diverges is an error, not a new start
+  find_base();
+  for (std::size_t i = 0; i < kWheels.size(); ++i) {
+    wheels_[i] = find_hinge(kWheels[i], group);
+  }
+  const auto& base = robot.base()->options().joints;
+  for (int j = 0; j < robot.nv(); ++j) {
+    const bool of_base = std::find(base.begin(), base.end(), j) != base.end();
+    hinges_.push_back(of_base ? Hinge{-1, -1, -1, {}}
+                              : find_hinge(robot.joint_names()[static_cast<std::size_t>(j)], group));
+  }
+  assign_geoms();
+}
+
+std::unique_ptr<mjData, decltype(&mj_deleteData)> MujocoModel::make_data() const {
+  return {mj_makeData(model_.get()), mj_deleteData};
+}
+
+std::string MujocoModel::name(mjtObj type, int index) const {
+  const char* name = mj_id2name(model_.get(), type, index);
+  return name == nullptr ? std::string(kind_of(type)) + " " + std::to_string(index) : name;
+}
+
+int MujocoModel::find(mjtObj type, const std::string& name) const {
+  const int index = mj_name2id(model_.get(), type, name.c_str());
+  if (index >= 0) {
+    return index;
+  }
+  std::vector<std::string> known;
+  for (int i = 0; i < static_cast<int>(count(*model_, type)); ++i) {
+    known.push_back(this->name(type, i));
+  }
+  throw ConfigError("plant: model: " + file_ + ": it has no " + kind_of(type) + " '" + name + "'" +
+                    name_hint(name, known));
+}
+
+void MujocoModel::find_base() {
+  for (int joint = 0; joint < model_->njnt; ++joint) {
+    if (model_->jnt_type[joint] == mjJNT_FREE) {
+      base_q_ = model_->jnt_qposadr[joint];
+      base_v_ = model_->jnt_dofadr[joint];
+      return;
+    }
+  }
+  throw ConfigError("plant: model: " + file_ + ": it has no free joint, so its base cannot move");
+}
+
+MujocoModel::Hinge MujocoModel::find_hinge(const std::string& name, int actuator_group) const {
+  const int joint = find(mjOBJ_JOINT, name);
+  if (model_->jnt_type[joint] != mjJNT_HINGE) {
+    throw ConfigError("plant: model: " + file_ + ": joint '" + name + "' is not a hinge");
+  }
+  Hinge hinge{joint, model_->jnt_qposadr[joint], model_->jnt_dofadr[joint], {}};
+  for (int i = 0; i < model_->nactuator; ++i) {
+    if (model_->actuator_group[i] == actuator_group && model_->actuator_trntype[i] == mjTRN_JOINT &&
+        model_->actuator_trnid[2 * i] == joint) {
+      hinge.actuators.push_back(i);
+    }
+  }
+  if (hinge.actuators.empty()) {
+    throw ConfigError("plant: model: " + file_ + ": joint '" + name + "' has no actuator in group " +
+                      std::to_string(actuator_group) +
+                      (actuator_group == kMotors ? ", the torque motors" : ", the velocity servos"));
+  }
+  return hinge;
+}
+
+/// A wheel's geoms are those of its body and of the rollers on it.
+void MujocoModel::assign_geoms() {
+  for (int geom = 0; geom < model_->ngeom; ++geom) {
+    int wheel = -1;
+    for (int body = model_->geom_bodyid[geom]; body > 0; body = model_->body_parentid[body]) {
+      for (int i = 0; i < 4; ++i) {
+        wheel = model_->jnt_bodyid[this->wheel(i).joint] == body ? i : wheel;
+      }
+    }
+    geom_wheel_.push_back(wheel);
+  }
+}
+
+}  // namespace tope
