@@ -160,12 +160,7 @@ struct Mujoco::Simulator {
       }
     }
     for (int i = 0; i < data->ncon; ++i) {
-      const mjContact& contact = data->contact[i];
-      const bool rolls = model.wheel_of_geom(contact.geom[0]) >= 0 || model.wheel_of_geom(contact.geom[1]) >= 0;
-      const bool on_floor = model.get()->geom_type[contact.geom[0]] == mjGEOM_PLANE;
-      if (!rolls || !on_floor) {
-        note_touch(contact, i);
-      }
+      note_touch(i);
     }
   }
 
@@ -177,11 +172,19 @@ struct Mujoco::Simulator {
     }
   }
 
-  void note_touch(const mjContact& contact, int index) {
+  void note_touch(int contact) {
+    const int first = data->contact[contact].geom[0];
+    const int second = data->contact[contact].geom[1];
+    const bool in_order = model.part_of_scene(second);
+    const int of_robot = in_order ? first : second;
+    const int touched = in_order ? second : first;
+    const bool on_floor = model.get()->geom_type[touched] == mjGEOM_PLANE;
+    if (model.wheel_of_geom(of_robot) >= 0 && on_floor) {
+      return;  // it rolls
+    }
     std::array<mjtNum, 6> force{};
-    mj_contactForce(model.get(), data.get(), index, force.data());
-    const int* body = model.get()->geom_bodyid;
-    double& largest = touches[{body[contact.geom[0]], body[contact.geom[1]]}];
+    mj_contactForce(model.get(), data.get(), contact, force.data());
+    double& largest = touches[{of_robot, touched}];
     largest = std::max(largest, force[0]);
   }
 
@@ -243,7 +246,7 @@ struct Mujoco::Simulator {
   bool grip_lost = false;
   std::vector<double> friction;                   // of every geom in the model as it was loaded
   Vector stop_force;                              // largest, of each joint
-  std::map<std::pair<int, int>, double> touches;  // largest force between two bodies
+  std::map<std::pair<int, int>, double> touches;  // largest force between two geoms
 };
 
 Mujoco::Mujoco(const Robot& robot, const MujocoOptions& options, double dt)
@@ -287,8 +290,9 @@ std::map<std::string, double> Mujoco::contacts() const {
       largest[s.robot.joint_names()[static_cast<std::size_t>(j)] + " at its stop"] = s.stop_force[j];
     }
   }
-  for (const auto& [bodies, force] : s.touches) {
-    largest[s.model.name(mjOBJ_BODY, bodies.second) + " on " + s.model.name(mjOBJ_BODY, bodies.first)] = force;
+  for (const auto& [geoms, force] : s.touches) {
+    double& entry = largest[s.model.owner(geoms.first) + " on " + s.model.owner(geoms.second)];
+    entry = std::max(entry, force);
   }
   return largest;
 }

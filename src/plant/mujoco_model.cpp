@@ -27,25 +27,14 @@ std::unique_ptr<mjModel, decltype(&mj_deleteModel)> load(const std::filesystem::
   return model;
 }
 
-const char* kind_of(mjtObj type) {
+int count(const mjModel& model, mjtObj type) {
   switch (type) {
     case mjOBJ_JOINT:
-      return "joint";
+      return static_cast<int>(model.njnt);
     case mjOBJ_SITE:
-      return "site";
+      return static_cast<int>(model.nsite);
     default:
-      return "body";
-  }
-}
-
-mjtSize count(const mjModel& model, mjtObj type) {
-  switch (type) {
-    case mjOBJ_JOINT:
-      return model.njnt;
-    case mjOBJ_SITE:
-      return model.nsite;
-    default:
-      return model.nbody;
+      return static_cast<int>(model.nbody);
   }
 }
 
@@ -77,9 +66,22 @@ std::unique_ptr<mjData, decltype(&mj_deleteData)> MujocoModel::make_data() const
   return {mj_makeData(model_.get()), mj_deleteData};
 }
 
+bool MujocoModel::part_of_scene(int geom) const {
+  const int body = model_->geom_bodyid[geom];
+  return body == 0 || model_->body_mocapid[body] >= 0;
+}
+
+std::string MujocoModel::owner(int geom) const {
+  const int body = model_->geom_bodyid[geom];
+  if (wheel_of_geom(geom) >= 0) {
+    return kWheels[static_cast<std::size_t>(wheel_of_geom(geom))];
+  }
+  return body == 0 ? name(mjOBJ_GEOM, geom) : name(mjOBJ_BODY, body);
+}
+
 std::string MujocoModel::name(mjtObj type, int index) const {
   const char* name = mj_id2name(model_.get(), type, index);
-  return name == nullptr ? std::string(kind_of(type)) + " " + std::to_string(index) : name;
+  return name == nullptr ? std::string(mju_type2Str(type)) + " " + std::to_string(index) : name;
 }
 
 int MujocoModel::find(mjtObj type, const std::string& name) const {
@@ -88,10 +90,10 @@ int MujocoModel::find(mjtObj type, const std::string& name) const {
     return index;
   }
   std::vector<std::string> known;
-  for (int i = 0; i < static_cast<int>(count(*model_, type)); ++i) {
+  for (int i = 0; i < count(*model_, type); ++i) {
     known.push_back(this->name(type, i));
   }
-  throw ConfigError("plant: model: " + file_ + ": it has no " + kind_of(type) + " '" + name + "'" +
+  throw ConfigError("plant: model: " + file_ + ": it has no " + mju_type2Str(type) + " '" + name + "'" +
                     name_hint(name, known));
 }
 

@@ -39,6 +39,10 @@ class MujocoModel {
   int base_v() const { return base_v_; }  ///< in qvel
   /// The wheel that a geom belongs to, or -1.
   int wheel_of_geom(int geom) const { return geom_wheel_[static_cast<std::size_t>(geom)]; }
+  /// True for what stands still or moves by a scenario alone: the floor, the obstacle.
+  bool part_of_scene(int geom) const;
+  /// What a geom belongs to: its wheel, its body, or its own name where that is the world.
+  std::string owner(int geom) const;
 
  private:
   void find_base();
