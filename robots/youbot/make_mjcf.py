@@ -138,7 +138,7 @@ def add_wheel(base: ET.Element, name: str, ahead: int, left: int) -> None:
 
 
 def add_arm(base: ET.Element) -> None:
-    """Add the arm, the closed gripper, the frame `ee` and in it a body for a payload, massless as long as it is empty."""
+    """Add the arm, the closed gripper, the frame `ee`, and in it a body for a payload, next to nothing until it is there."""
     body = add_body(base, "arm_base_link", (robot.MOUNT_AHEAD, 0.0, robot.MOUNT_HEIGHT), robot.ARM_BASE)
     add_shapes(body, robot.ARM_BASE_SHAPES)
     for i, inertial in enumerate(robot.ARM_LINKS):
@@ -168,7 +168,7 @@ def add_arm(base: ET.Element) -> None:
         add_shapes(finger, (Shape(robot.FINGER_BOX, centre, "grey"),))
     tip = (0.0, 0.0, robot.GRIPPER_TO_TIP)
     ET.SubElement(palm, "site", name="ee", pos=triple(tip), size="0.005", rgba="1 0 0 1")
-    add_body(palm, "payload", tip)
+    add_body(palm, "payload", tip, robot.CARRIER)
 
 
 def symmetric(bound: float) -> str:

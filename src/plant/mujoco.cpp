@@ -122,7 +122,7 @@ struct Mujoco::Simulator {
   void apply_faults() {
     const MujocoFaults& faults = options.faults;
     set_grip(faults.lost_grip.contains(data->time));
-    set_payload(faults.payload.contains(data->time) ? faults.payload_mass : 0.0);
+    set_payload(faults.payload.contains(data->time));
     if (faults.obstacle.contains(data->time)) {
       data->mocap_pos[3 * obstacle_mocap] += faults.obstacle_velocity * model.get()->opt.timestep;
     }
@@ -141,13 +141,15 @@ struct Mujoco::Simulator {
     }
   }
 
-  void set_payload(double mass) {
-    if (payload_body < 0 || mass == model.get()->body_mass[payload_body]) {
+  void set_payload(bool held) {
+    if (held == payload_held) {
       return;
     }
-    model.get()->body_mass[payload_body] = mass;
+    payload_held = held;
+    const double mass = held ? options.faults.payload_mass : -options.faults.payload_mass;
+    model.get()->body_mass[payload_body] += mass;
     for (int i = 0; i < 3; ++i) {
-      model.get()->body_inertia[3 * payload_body + i] = kSphere * mass * kPayloadRadius * kPayloadRadius;
+      model.get()->body_inertia[3 * payload_body + i] += kSphere * mass * kPayloadRadius * kPayloadRadius;
     }
     const auto scratch = model.make_data();  // the model's derived constants need a state to work in
     mj_setConst(model.get(), scratch.get());
@@ -244,6 +246,7 @@ struct Mujoco::Simulator {
   int payload_body = -1;
   int obstacle_mocap = -1;
   bool grip_lost = false;
+  bool payload_held = false;
   std::vector<double> friction;                   // of every geom in the model as it was loaded
   Vector stop_force;                              // largest, of each joint
   std::map<std::pair<int, int>, double> touches;  // largest force between two geoms
@@ -257,7 +260,7 @@ Mujoco::~Mujoco() = default;
 void Mujoco::reset(const Vector& q) {
   Simulator& s = *simulator_;
   s.set_grip(false);
-  s.set_payload(0.0);
+  s.set_payload(false);
   s.place(q);
   s.hold();
   s.command.setZero();
@@ -268,6 +271,9 @@ void Mujoco::reset(const Vector& q) {
 
 void Mujoco::step(const Vector& u, double /*dt*/) {
   Simulator& s = *simulator_;
+  if (!u.allFinite()) {
+    throw Error("plant: the command is not finite");
+  }
   if (!s.options.faults.stall.contains(s.data->time)) {
     s.command = u;
   }

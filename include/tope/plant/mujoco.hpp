@@ -46,7 +46,7 @@ struct MujocoOptions {
 /// The model must have, by name: one free joint, under the body that the base's three joints place; a hinge for every
 /// other joint of the robot; the hinges wheel_fl, wheel_fr, wheel_bl and wheel_br; for each hinge an actuator in group
 /// 0 (torque motors) and in group 1 (velocity servos: an actuator with an integrator starts as if it had held the robot
-/// before). For faults also a massless body `payload` and a mocap body `obstacle`.
+/// before). For faults also a body `payload` next to no mass, and a mocap body `obstacle`.
 class Mujoco final : public Plant {
  public:
   /// dt: period of step() [s], cut into equal steps no longer than the model's. Errors: ConfigError for a robot without
@@ -55,7 +55,8 @@ class Mujoco final : public Plant {
   ~Mujoco() override;
 
   void reset(const Vector& q) override;
-  /// dt must be the one given at construction. Errors: Error when the simulation diverges.
+  /// dt must be the one given at construction. Errors: Error for a command that is not finite, or
+  /// when the simulation diverges.
   void step(const Vector& u, double dt) override;
   const Vector& position() const override;
   const Vector& velocity() const override;
