@@ -53,6 +53,9 @@ STOPS: tuple[tuple[float, float], ...] = (
     (-167.5, 167.5),
 )
 
+# The plant adds a payload to this body; without any mass MuJoCo would misplace its centre.
+NO_PAYLOAD = Inertial(1e-9, robot.ORIGIN, (1e-12, 1e-12, 1e-12))
+
 # --- Scene ---
 # A low box before the left half of the chassis. The scenarios stop base_x at 0.35 m, where the chassis' front, 0.29 m
 # ahead, meets its face while the robot looks along x; turned to the left, as there, that half lies further back.
@@ -138,7 +141,7 @@ def add_wheel(base: ET.Element, name: str, ahead: int, left: int) -> None:
 
 
 def add_arm(base: ET.Element) -> None:
-    """Add the arm, the closed gripper, the frame `ee`, and in it a body for a payload, next to nothing until it is there."""
+    """Add the arm, the closed gripper, the frame `ee`, and in it a body for a payload, empty at first."""
     body = add_body(base, "arm_base_link", (robot.MOUNT_AHEAD, 0.0, robot.MOUNT_HEIGHT), robot.ARM_BASE)
     add_shapes(body, robot.ARM_BASE_SHAPES)
     for i, inertial in enumerate(robot.ARM_LINKS):
@@ -168,7 +171,7 @@ def add_arm(base: ET.Element) -> None:
         add_shapes(finger, (Shape(robot.FINGER_BOX, centre, "grey"),))
     tip = (0.0, 0.0, robot.GRIPPER_TO_TIP)
     ET.SubElement(palm, "site", name="ee", pos=triple(tip), size="0.005", rgba="1 0 0 1")
-    add_body(palm, "payload", tip, robot.CARRIER)
+    add_body(palm, "payload", tip, NO_PAYLOAD)
 
 
 def symmetric(bound: float) -> str:

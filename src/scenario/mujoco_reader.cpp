@@ -3,12 +3,16 @@
 namespace tope {
 namespace {
 
-double not_negative(const YamlReader& yaml, const std::string& key, double fallback) {
-  const double value = yaml.number(key, fallback);
+double not_negative(const YamlReader& yaml, const std::string& key) {
+  const double value = yaml.number(key);
   if (value < 0.0) {
     yaml.fail(key, "must not be negative");
   }
   return value;
+}
+
+double not_negative(const YamlReader& yaml, const std::string& key, double fallback) {
+  return yaml.has(key) ? not_negative(yaml, key) : fallback;
 }
 
 SensorOptions read_sensors(const YamlReader& yaml) {
@@ -29,7 +33,7 @@ SensorOptions read_sensors(const YamlReader& yaml) {
 /// `at` [s] and `for` [s]; without `for` to the end.
 Interval read_interval(const YamlReader& yaml) {
   Interval interval;
-  interval.start = not_negative(yaml, "at", 0.0);
+  interval.start = not_negative(yaml, "at");
   interval.duration = yaml.positive("for", interval.duration);
   return interval;
 }

@@ -29,10 +29,15 @@ Robot read_robot(const YamlReader& yaml) {
   return has_config ? Robot::from_urdf(urdf, config) : Robot::from_urdf(urdf);
 }
 
-MovingLimit read_moving_limit(const YamlReader& yaml, int joint) {
+/// `speed_bound` is the joint's: beyond its limit it is led back at no more than half of that.
+MovingLimit read_moving_limit(const YamlReader& yaml, int joint, double speed_bound) {
   MovingLimit moving;
   moving.joint = joint;
   moving.velocity = yaml.number("velocity");
+  if (std::abs(moving.velocity) >= 0.5 * speed_bound) {
+    yaml.fail("velocity", "must be below half of the speed bound, " + std::to_string(0.5 * speed_bound) +
+                              ", got " + std::to_string(moving.velocity));
+  }
   moving.start = yaml.number("at");
   moving.duration = yaml.positive("for");
   yaml.finish();
@@ -55,7 +60,7 @@ void read_joint_limits(const YamlReader& joints, Robot& robot, JointLimitOptions
       options.buffers[name] = yaml.positive("buffer");
     }
     if (const auto motion = yaml.optional_map("upper_motion")) {
-      moving.push_back(read_moving_limit(*motion, joint));
+      moving.push_back(read_moving_limit(*motion, joint, velocity[joint]));
     }
     yaml.finish();
     located(joints, name, [&] { robot.set_position_limits(lower, upper); });

@@ -1,3 +1,4 @@
+#include <tope/common/error.hpp>
 #include <tope/plant/kinematic.hpp>
 #include <tope/plant/mujoco.hpp>
 #include <tope/scenario/simulation.hpp>
@@ -141,10 +142,13 @@ Summary Simulation::run() {
 void Simulation::move_limits(double t, Metrics& metrics) {
   const Robot& robot = *scenario_.robot;
   for (const MovingLimit& moving : scenario_.moving_limits) {
-    controller_.move_limits(moving.joint,
-                            {.lower = robot.position_lower()[moving.joint],
+    const LimitMotion motion{.lower = robot.position_lower()[moving.joint],
                              .upper = robot.position_upper()[moving.joint] + moving.moved(t),
-                             .upper_rate = moving.rate(t)});
+                             .upper_rate = moving.rate(t)};
+    if (!controller_.move_limits(moving.joint, motion)) {
+      throw Error("limits of " + robot.joint_names()[static_cast<std::size_t>(moving.joint)] + " at " +
+                  std::to_string(t) + " s: the upper one comes too near the lower one for their buffers");
+    }
   }
   metrics.move_limits(controller_.limits().lower(), controller_.limits().upper());
 }

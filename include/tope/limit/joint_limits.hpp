@@ -59,7 +59,7 @@ class JointLimits {
 
   /// Moves the limits of a joint from the next update on. Never allocates. False, and nothing changes, for a joint that
   /// is none, a motion that is not finite where the joint has a limit, or buffers that would overlap.
-  bool move(int joint, const LimitMotion& motion);
+  [[nodiscard]] bool move(int joint, const LimitMotion& motion);
 
   /// Evaluates every row at q (nq). Never allocates.
   void update(const VectorArg& q);
