@@ -82,18 +82,20 @@ struct Mujoco::Simulator {
     v.setZero();
   }
 
-  /// A servo's integrator starts at the torque that holds its joint.
+  /// Integrators start at the torques that hold the arm.
   void hold() {
     mj_forward(model.get(), data.get());
-    for (int j = 0; j < robot.nv(); ++j) {
-      const MujocoModel::Hinge& hinge = model.hinge(j);
-      for (const int actuator : hinge.actuators) {
-        if (model.get()->actuator_dyntype[actuator] == mjDYN_INTEGRATOR) {
-          const double gain = model.get()->actuator_gainprm[mjNGAIN * actuator];
-          data->act[model.get()->actuator_actadr[actuator]] =
-              data->qpos[hinge.q] + data->qfrc_bias[hinge.v] / gain;
-        }
-      }
+    for (const MujocoModel::Integrator& integrator : model.integrators()) {
+      data->act[integrator.state] = data->qpos[integrator.q] + data->qfrc_bias[integrator.v] / integrator.gain;
+    }
+  }
+
+  /// No integrator runs ahead of what its motor can give.
+  void stop_windup() {
+    for (const MujocoModel::Integrator& integrator : model.integrators()) {
+      const double lead = integrator.torque_bound / integrator.gain;
+      const double angle = data->qpos[integrator.q];
+      data->act[integrator.state] = std::clamp(data->act[integrator.state], angle - lead, angle + lead);
     }
   }
 
@@ -194,6 +196,7 @@ struct Mujoco::Simulator {
     for (int i = 0; i < steps; ++i) {
       apply_faults();
       mj_step(model.get(), data.get());
+      stop_windup();
       note_contacts();
     }
     for (const mjtWarning warning : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC, mjWARN_BADCTRL}) {

@@ -4,6 +4,7 @@
 #include <tope/common/names.hpp>
 
 #include <algorithm>
+#include <limits>
 
 namespace tope {
 namespace {
@@ -58,6 +59,12 @@ MujocoModel::MujocoModel(const Robot& robot, const MujocoOptions& options)
     const bool of_base = std::find(base.begin(), base.end(), j) != base.end();
     hinges_.push_back(of_base ? Hinge{-1, -1, -1, {}}
                               : find_hinge(robot.joint_names()[static_cast<std::size_t>(j)], group));
+  }
+  for (const Hinge& hinge : wheels_) {
+    find_integrators(hinge);
+  }
+  for (const Hinge& hinge : hinges_) {
+    find_integrators(hinge);
   }
   assign_geoms();
 }
@@ -126,6 +133,21 @@ MujocoModel::Hinge MujocoModel::find_hinge(const std::string& name, int actuator
                       (actuator_group == kMotors ? ", the torque motors" : ", the velocity servos"));
   }
   return hinge;
+}
+
+void MujocoModel::find_integrators(const Hinge& hinge) {
+  for (const int actuator : hinge.actuators) {
+    if (model_->actuator_dyntype[actuator] == mjDYN_INTEGRATOR) {
+      const double bound = model_->jnt_actfrclimited[hinge.joint] != 0
+                               ? model_->jnt_actfrcrange[2 * hinge.joint + 1]
+                               : std::numeric_limits<double>::infinity();
+      integrators_.push_back({.state = model_->actuator_actadr[actuator],
+                              .q = hinge.q,
+                              .v = hinge.v,
+                              .gain = model_->actuator_gainprm[mjNGAIN * actuator],
+                              .torque_bound = bound});
+    }
+  }
 }
 
 /// A wheel's geoms are those of its body and of the rollers on it.

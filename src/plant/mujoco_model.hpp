@@ -32,6 +32,16 @@ class MujocoModel {
     int v;                       ///< in qvel
     std::vector<int> actuators;  ///< of the group in use
   };
+  /// The integral part of a hinge's servo: torque = gain (state - angle).
+  struct Integrator {
+    int state;  ///< in act
+    int q;      ///< in qpos
+    int v;      ///< in qvel
+    double gain;
+    double torque_bound;
+  };
+  /// Of the actuators in use.
+  const std::vector<Integrator>& integrators() const { return integrators_; }
   const Hinge& wheel(int i) const { return wheels_[static_cast<std::size_t>(i)]; }
   /// Of the robot's joint; none (joint < 0) for the three of the base.
   const Hinge& hinge(int robot_joint) const { return hinges_[static_cast<std::size_t>(robot_joint)]; }
@@ -47,12 +57,14 @@ class MujocoModel {
  private:
   void find_base();
   Hinge find_hinge(const std::string& name, int actuator_group) const;
+  void find_integrators(const Hinge& hinge);
   void assign_geoms();
 
   std::string file_;
   std::unique_ptr<mjModel, decltype(&mj_deleteModel)> model_;
   std::array<Hinge, 4> wheels_;
   std::vector<Hinge> hinges_;
+  std::vector<Integrator> integrators_;
   std::vector<int> geom_wheel_;
   int base_q_ = -1;
   int base_v_ = -1;
