@@ -43,6 +43,12 @@ campaign-goals: build
 campaign-limits: build
 	$(BIN)/python bench/random_limits.py
 
+# The experiments in MuJoCo, with faults: figures of the README and of docs/experiment.md. Half a minute.
+.PHONY: experiment
+experiment: build
+	$(BIN)/python bench/experiment.py
+	$(BIN)/python bench/experiment_figure.py
+
 lint:
 	$(MAKE) build TESTS=ON
 	$(BIN)/ruff check .
