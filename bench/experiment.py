@@ -1,8 +1,8 @@
 """Run: make experiment.
 
-The experiments in MuJoCo: goals, smooth against hard limits, faults, and the real-time factor, as Markdown tables.
-Errors and limits are those of the true state; "as seen" is what the robot's sensors say. Fails if a joint touches its
-stop.
+The experiments in MuJoCo: goals, smooth against hard limits, faults, and the real-time factor, as Markdown
+tables. Errors and limits are those of the true state; "as seen" is what the robot's sensors say. Fails if a
+joint touches its stop.
 """
 
 from collections.abc import Mapping
@@ -39,6 +39,7 @@ FAULTS: dict[str, dict[str, Any]] = {
         "plant.sensors.encoder_noise": 1e-3,
         "plant.sensors.localiser_noise": 1e-3,
     },
+    "all that the sensors say is 10 ms old": {"plant.sensors.latency": 0.01},
     "0.5 kg picked up at 2 s": {"plant.faults.payload": {"mass": 0.5, "at": 2.0}},
     "obstacle comes 0.15 m at 0.1 m/s from 4 s on": {
         "plant.faults.obstacle": {"velocity": -0.1, "at": 4.0, "for": 1.5},
@@ -107,8 +108,8 @@ def goals() -> Table:
 def smoothness() -> Table:
     """Smooth against hard limits over the last half of the run.
 
-    Root mean square of the end-effector's acceleration, linear and angular, and the largest total variation of a
-    joint's velocity, over the joint's speed bound.
+    Root mean square of the end-effector's acceleration, linear and angular, and the largest total variation
+    of a joint's velocity, over the joint's speed bound.
     """
     rows = table("mode", "limits", "m/s2", "rad/s2", "variation of velocity", "contacts")
     for mode in SCENARIO:

@@ -1,7 +1,7 @@
 """Run: make experiment.
 
-Draws docs/experiment.svg: the paper's Figure 5 (a) to (d) as the experiments in MuJoCo have it. Grey: the first
-experiment, hard limits and a potential field. Black: the second, tope's default.
+Draws docs/experiment.svg: the paper's Figure 5 (a) to (d) as the experiments in MuJoCo have it. Grey: the
+first experiment, hard limits and a potential field. Black: the second, tope's default.
 """
 
 from pathlib import Path
@@ -61,7 +61,9 @@ def panel(title: str, curves: list[tuple[str, Array, Array]], limit: float | Non
     if limit:
         parts.append(level(limit, "#c33", 'stroke-dasharray="5 4"'))
     for colour, t, y in curves:
-        parts.append(line(" ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x_of(t), y_of(y), strict=True)), colour))
+        parts.append(
+            line(" ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x_of(t), y_of(y), strict=True)), colour)
+        )
     return "\n".join(parts)
 
 

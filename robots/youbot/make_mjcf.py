@@ -2,14 +2,14 @@
 
     python robots/youbot/make_mjcf.py
 
-Masses, inertias, lengths, zero and signs are make_urdf.py's; the rotors are youbot.yaml's. What is new here is
-what only a simulator needs: rollers, floor, mechanical stops, motors, servos, and a box as the obstacle. "Assumed"
-marks a figure that no source gives; the sources' short names are spelled out in README.md. Units as in
-make_urdf.py.
+Masses, inertias, lengths, zero and signs are make_urdf.py's; the rotors are youbot.yaml's. What is new here
+is what only a simulator needs: rollers, floor, mechanical stops, motors, servos, and a box as the obstacle.
+"Assumed" marks a figure that no source gives; the sources' short names are spelled out in README.md. Units as
+in make_urdf.py.
 """
 
 import xml.etree.ElementTree as ET
-from math import cos, pi, radians, sin, sqrt
+from math import cos, pi, radians, sin
 from pathlib import Path
 
 import make_urdf as robot
@@ -21,8 +21,8 @@ OUTPUT = Path(__file__).with_name("youbot_rollers.xml")
 ROLLERS = 6  # a wheel: MAN Fig 3-4, WEB
 ROLLER_MASS = 0.05  # WEB
 ROLLER_RADIUS = 0.014  # WEB: at its middle
-# An ellipsoid whose middle runs on a ring of this radius, its axis at 45 degrees to the wheel's. At the angle s from
-# the lowest point the wheel's radius is
+# An ellipsoid whose middle runs on a ring of this radius, its axis at 45 degrees to the wheel's. At the angle
+# s from the lowest point the wheel's radius is
 #   ring cos s + sqrt(radius^2 + (half length^2 - radius^2) sin^2 s / 2),
 # which these two figures keep within 0.25 % of WHEEL_RADIUS over the 60 degrees that a roller carries.
 RING_RADIUS = 0.03338
@@ -35,8 +35,9 @@ FRICTION = 0.8  # assumed: rubber on a floor; from 0.4 to 1.2 the motion is the 
 # --- Motors ---
 WHEEL_ROTOR = 0.00901  # youbot.yaml
 ARM_ROTOR = (0.3285, 0.3285, 0.1350, 0.04663, 0.01764)  # youbot.yaml
-# Velocity servos, proportional and integral, critically damped at this bandwidth with the inertia that each joint
-# feels at most (rotor and stretched links; a wheel: a fourth of the robot). Assumed: KUKA's are not published.
+# Velocity servos, proportional and integral, critically damped at this bandwidth with the inertia that each
+# joint feels at most (rotor and stretched links; a wheel: a fourth of the robot). Assumed: KUKA's are not
+# published.
 SERVO_BANDWIDTH = 50.0  # rad/s
 ARM_SERVO_INERTIA = (0.73, 0.65, 0.23, 0.064, 0.018)
 WHEEL_SERVO_INERTIA = 0.026
@@ -57,9 +58,10 @@ STOPS: tuple[tuple[float, float], ...] = (
 NO_PAYLOAD = Inertial(1e-9, robot.ORIGIN, (1e-12, 1e-12, 1e-12))
 
 # --- Scene ---
-# A low box before the left half of the chassis. The scenarios stop base_x at 0.35 m, where the chassis' front, 0.29 m
-# ahead, meets its face while the robot looks along x; turned to the left, as there, that half lies further back.
-OBSTACLE_BOX: Vector = (0.08, 0.08, 0.06)  # assumed: edges; higher than the chassis' clearance, below the goal
+# A low box before the left half of the chassis. The scenarios stop base_x at 0.35 m, where the chassis'
+# front, 0.29 m ahead, meets its face while the robot looks along x; turned to the left, as there, that half
+# lies further back. Higher than the chassis' clearance, and below the goal.
+OBSTACLE_BOX: Vector = (0.08, 0.08, 0.06)  # assumed: edges
 OBSTACLE_FACE = 0.35 + 0.29
 OBSTACLE_LEFT = 0.01  # y of its centre: the goal lies to the left of it
 FLOOR_SIZE = 20.0
@@ -68,8 +70,8 @@ FLOOR_SIZE = 20.0
 def ring_inertia() -> tuple[float, float]:
     """Inertia of a wheel's rollers about the wheel's axis, and across it.
 
-    A roller's axis is at 45 degrees to the wheel's, so along that it has the mean of its own two moments. The ring
-    has no products of inertia: they cancel around it.
+    A roller's axis is at 45 degrees to the wheel's, so along that it has the mean of its own two moments. The
+    ring has no products of inertia: they cancel around it.
     """
     own_along, own_across, _ = roller_moments()
     about = ROLLERS * (ROLLER_MASS * RING_RADIUS**2 + (own_along + own_across) / 2)
@@ -277,7 +279,12 @@ def add_actuators(root: ET.Element) -> None:
     for name, _, _ in joints:
         ET.SubElement(actuator, "motor", name=f"{name}_motor", joint=name, group=MOTORS)
     for name, speed, inertia in joints:
-        servo = {"joint": name, "group": SERVOS, "ctrllimited": "true", "ctrlrange": symmetric(round(speed, 6))}
+        servo = {
+            "joint": name,
+            "group": SERVOS,
+            "ctrllimited": "true",
+            "ctrlrange": symmetric(round(speed, 6)),
+        }
         kv = 2 * SERVO_BANDWIDTH * inertia
         kp = SERVO_BANDWIDTH**2 * inertia
         ET.SubElement(actuator, "velocity", {"name": f"{name}_servo", "kv": number(kv), **servo})

@@ -53,13 +53,11 @@ bool JointLimits::limited(int joint) const {
   return std::isfinite(lower_[joint]) || std::isfinite(upper_[joint]);
 }
 
-double JointLimits::range_needed(int joint) const {
-  return 2.0 * std::max(buffer_[joint], options_.margin);
-}
+double JointLimits::range_needed(int joint) const { return 2.0 * std::max(buffer_[joint], options_.margin); }
 
 bool JointLimits::move(int joint, const LimitMotion& motion) {
-  if (joint < 0 || joint >= size() || !std::isfinite(motion.lower_rate) || !std::isfinite(motion.upper_rate) ||
-      !(motion.upper - motion.lower > range_needed(joint))) {
+  if (joint < 0 || joint >= size() || !std::isfinite(motion.lower_rate) ||
+      !std::isfinite(motion.upper_rate) || !(motion.upper - motion.lower > range_needed(joint))) {
     return false;
   }
   lower_[joint] = motion.lower;

@@ -1,4 +1,6 @@
+#include "../common/require_positive.hpp"
 #include "mujoco_model.hpp"
+#include "require_base.hpp"
 
 #include <tope/common/error.hpp>
 #include <tope/plant/mujoco.hpp>
@@ -12,10 +14,11 @@
 namespace tope {
 namespace {
 
-constexpr double kIce = 0.02;              // friction of a wheel without grip
-constexpr double kPayloadRadius = 0.02;    // of the ball that is the payload [m]
-constexpr double kSphere = 2.0 / 5.0;      // inertia of a ball over m r^2
-constexpr double kStepTolerance = 1e-9;    // of a period that is a whole number of steps
+constexpr double kIce = 0.02;            // friction of a wheel without grip
+constexpr double kPayloadRadius = 0.02;  // of the ball that is the payload [m]
+constexpr double kSphere = 2.0 / 5.0;    // inertia of a ball over m r^2
+constexpr double kStepTolerance = 1e-9;  // of a period that is a whole number of steps
+constexpr std::ptrdiff_t kTriple = 3;    // numbers a row of MuJoCo's tables
 
 void require_interval(const char* fault, const Interval& interval) {
   if (std::isnan(interval.start) || !(interval.duration > 0.0)) {
@@ -30,6 +33,7 @@ struct Mujoco::Simulator {
       : robot(robot_),
         options(options_),
         dt(period),
+        base(require_base(robot)),
         model(robot, options),
         data(model.make_data()),
         sensors(robot, options.sensors, period),
@@ -37,10 +41,11 @@ struct Mujoco::Simulator {
         q(Vector::Zero(robot.nq())),
         v(Vector::Zero(robot.nv())),
         stop_force(Vector::Zero(robot.nv())) {
+    require_positive("plant: dt", dt);
     mjModel& m = *model.get();
     steps = static_cast<int>(std::ceil(dt / m.opt.timestep - kStepTolerance));
     m.opt.timestep = dt / steps;
-    friction.assign(m.geom_friction, m.geom_friction + 3 * m.ngeom);
+    friction.assign(m.geom_friction, m.geom_friction + kTriple * m.ngeom);
     check_faults();
   }
 
@@ -51,18 +56,20 @@ struct Mujoco::Simulator {
     require_interval("payload", faults.payload);
     require_interval("obstacle", faults.obstacle);
     if (std::isfinite(faults.payload.start)) {
+      require_positive("plant: faults: payload: mass", faults.payload_mass);
       payload_body = model.find(mjOBJ_BODY, "payload");
     }
     if (std::isfinite(faults.obstacle.start)) {
       obstacle_mocap = model.get()->body_mocapid[model.find(mjOBJ_BODY, "obstacle")];
       if (obstacle_mocap < 0) {
-        throw ConfigError("plant: model: " + options.model.string() + ": body 'obstacle' is not a mocap body");
+        throw ConfigError("plant: model: " + options.model.string() +
+                          ": body 'obstacle' is not a mocap body");
       }
     }
   }
 
-  const std::array<int, 3>& base_joints() const { return robot.base()->options().joints; }
-  int base_joint(int i) const { return base_joints()[static_cast<std::size_t>(i)]; }
+  /// Of x, y and yaw.
+  int base_joint(int i) const { return base.options().joints[static_cast<std::size_t>(i)]; }
 
   void place(const Vector& start) {
     mj_resetData(model.get(), data.get());
@@ -86,7 +93,8 @@ struct Mujoco::Simulator {
   void hold() {
     mj_forward(model.get(), data.get());
     for (const MujocoModel::Integrator& integrator : model.integrators()) {
-      data->act[integrator.state] = data->qpos[integrator.q] + data->qfrc_bias[integrator.v] / integrator.gain;
+      data->act[integrator.state] =
+          data->qpos[integrator.q] + data->qfrc_bias[integrator.v] / integrator.gain;
     }
   }
 
@@ -107,7 +115,6 @@ struct Mujoco::Simulator {
 
   /// Gives the command to the motors as the robot's own drives would: with what it knows of its heading.
   void drive_all() {
-    const MecanumBase& base = *robot.base();
     const double yaw = sensors.position()[base_joint(2)];
     const MecanumBase::Wheels wheels =
         options.drive == MujocoOptions::Drive::velocity
@@ -126,7 +133,7 @@ struct Mujoco::Simulator {
     set_grip(faults.lost_grip.contains(data->time));
     set_payload(faults.payload.contains(data->time));
     if (faults.obstacle.contains(data->time)) {
-      data->mocap_pos[3 * obstacle_mocap] += faults.obstacle_velocity * model.get()->opt.timestep;
+      data->mocap_pos[kTriple * obstacle_mocap] += faults.obstacle_velocity * model.get()->opt.timestep;
     }
   }
 
@@ -137,8 +144,8 @@ struct Mujoco::Simulator {
     grip_lost = lost;
     for (int geom = 0; geom < model.get()->ngeom; ++geom) {
       if (model.wheel_of_geom(geom) == options.faults.lost_grip_wheel) {
-        const auto slide = static_cast<std::size_t>(3 * geom);
-        model.get()->geom_friction[slide] = lost ? kIce : friction[slide];
+        const std::ptrdiff_t slide = kTriple * geom;
+        model.get()->geom_friction[slide] = lost ? kIce : friction[static_cast<std::size_t>(slide)];
       }
     }
   }
@@ -151,7 +158,8 @@ struct Mujoco::Simulator {
     const double mass = held ? options.faults.payload_mass : -options.faults.payload_mass;
     model.get()->body_mass[payload_body] += mass;
     for (int i = 0; i < 3; ++i) {
-      model.get()->body_inertia[3 * payload_body + i] += kSphere * mass * kPayloadRadius * kPayloadRadius;
+      model.get()->body_inertia[kTriple * payload_body + i] +=
+          kSphere * mass * kPayloadRadius * kPayloadRadius;
     }
     const auto scratch = model.make_data();  // the model's derived constants need a state to work in
     mj_setConst(model.get(), scratch.get());
@@ -239,6 +247,7 @@ struct Mujoco::Simulator {
   Robot robot;
   MujocoOptions options;
   double dt;
+  MecanumBase base;
   MujocoModel model;
   std::unique_ptr<mjData, decltype(&mj_deleteData)> data;
   Sensors sensors;
@@ -311,7 +320,7 @@ Vector3 Mujoco::site_position(const std::string& site) const {
   const int index = s.model.find(mjOBJ_SITE, site);
   // mj_step leaves the sites where they were before its last step
   mj_kinematics(s.model.get(), s.data.get());
-  return Eigen::Map<const Vector3>(s.data->site_xpos + 3 * index);
+  return Eigen::Map<const Vector3>(s.data->site_xpos + kTriple * index);
 }
 
 }  // namespace tope

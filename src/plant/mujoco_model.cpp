@@ -1,5 +1,7 @@
 #include "mujoco_model.hpp"
 
+#include "require_base.hpp"
+
 #include <tope/common/error.hpp>
 #include <tope/common/names.hpp>
 
@@ -12,6 +14,8 @@ namespace {
 constexpr std::array<const char*, 4> kWheels{"wheel_fl", "wheel_fr", "wheel_bl", "wheel_br"};
 constexpr int kMotors = 0;  // actuator groups
 constexpr int kServos = 1;
+constexpr int kWithoutMotors = 0b01;  // the bit of a group switches it off
+constexpr int kWithoutServos = 0b10;
 
 std::unique_ptr<mjModel, decltype(&mj_deleteModel)> load(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file)) {
@@ -39,22 +43,23 @@ int count(const mjModel& model, mjtObj type) {
   }
 }
 
+// numbers a row of MuJoCo's tables
+constexpr std::ptrdiff_t kPair = 2;
+constexpr std::ptrdiff_t kGains = mjNGAIN;
+
 }  // namespace
 
 MujocoModel::MujocoModel(const Robot& robot, const MujocoOptions& options)
     : file_(options.model.string()), model_(load(options.model)), wheels_{} {
-  if (!robot.base()) {
-    throw ConfigError("plant: mujoco drives the base by its wheels, and the robot's file has no mecanum_base");
-  }
   const bool torque = options.drive == MujocoOptions::Drive::torque;
   const int group = torque ? kMotors : kServos;
-  model_->opt.disableactuator = 1 << (torque ? kServos : kMotors);
-  model_->opt.disableflags |= mjDSBL_AUTORESET;  // a run that diverges is an error, not a new start
+  model_->opt.disableactuator = torque ? kWithoutServos : kWithoutMotors;
+  model_->opt.disableflags = mjDSBL_AUTORESET;  // a run that diverges is an error, not a new start
   find_base();
   for (std::size_t i = 0; i < kWheels.size(); ++i) {
     wheels_[i] = find_hinge(kWheels[i], group);
   }
-  const auto& base = robot.base()->options().joints;
+  const auto& base = require_base(robot).options().joints;
   for (int j = 0; j < robot.nv(); ++j) {
     const bool of_base = std::find(base.begin(), base.end(), j) != base.end();
     hinges_.push_back(of_base ? Hinge{-1, -1, -1, {}}
@@ -97,6 +102,7 @@ int MujocoModel::find(mjtObj type, const std::string& name) const {
     return index;
   }
   std::vector<std::string> known;
+  known.reserve(static_cast<std::size_t>(count(*model_, type)));
   for (int i = 0; i < count(*model_, type); ++i) {
     known.push_back(this->name(type, i));
   }
@@ -123,7 +129,7 @@ MujocoModel::Hinge MujocoModel::find_hinge(const std::string& name, int actuator
   Hinge hinge{joint, model_->jnt_qposadr[joint], model_->jnt_dofadr[joint], {}};
   for (int i = 0; i < model_->nactuator; ++i) {
     if (model_->actuator_group[i] == actuator_group && model_->actuator_trntype[i] == mjTRN_JOINT &&
-        model_->actuator_trnid[2 * i] == joint) {
+        model_->actuator_trnid[kPair * i] == joint) {
       hinge.actuators.push_back(i);
     }
   }
@@ -139,12 +145,12 @@ void MujocoModel::find_integrators(const Hinge& hinge) {
   for (const int actuator : hinge.actuators) {
     if (model_->actuator_dyntype[actuator] == mjDYN_INTEGRATOR) {
       const double bound = model_->jnt_actfrclimited[hinge.joint] != 0
-                               ? model_->jnt_actfrcrange[2 * hinge.joint + 1]
+                               ? model_->jnt_actfrcrange[kPair * hinge.joint + 1]
                                : std::numeric_limits<double>::infinity();
       integrators_.push_back({.state = model_->actuator_actadr[actuator],
                               .q = hinge.q,
                               .v = hinge.v,
-                              .gain = model_->actuator_gainprm[mjNGAIN * actuator],
+                              .gain = model_->actuator_gainprm[kGains * actuator],
                               .torque_bound = bound});
     }
   }

@@ -3,10 +3,9 @@
 #include <tope/common/types.hpp>
 #include <tope/plant/mujoco.hpp>
 
-#include <mujoco/mujoco.h>
-
 #include <array>
 #include <memory>
+#include <mujoco/mujoco.h>
 #include <string>
 #include <vector>
 

@@ -1,4 +1,5 @@
-#include <tope/common/error.hpp>
+#include "require_base.hpp"
+
 #include <tope/plant/sensors.hpp>
 
 #include <array>
@@ -14,17 +15,10 @@ void require_not_negative(const char* option, double value) {
   }
 }
 
-const MecanumBase& base_of(const Robot& robot) {
-  if (!robot.base()) {
-    throw ConfigError("plant: sensors: the robot's file has no mecanum_base, whose wheels are read");
-  }
-  return *robot.base();
-}
-
 }  // namespace
 
 Sensors::Sensors(const Robot& robot, const SensorOptions& options, double dt)
-    : options_(options), dt_(dt), base_(base_of(robot)), random_(options.seed) {
+    : options_(options), dt_(dt), base_(require_base(robot)), random_(options.seed) {
   require_not_negative("encoder_noise", options.encoder_noise);
   require_not_negative("encoder_step", options.encoder_step);
   require_not_negative("localiser_noise", options.localiser_noise);
@@ -45,7 +39,7 @@ void Sensors::reset(const Vector& q, const MecanumBase::Wheels& wheels) {
 
 void Sensors::read(const Vector& q, const MecanumBase::Wheels& wheels) {
   State next = seen_.back();
-  Vector reading = q;
+  Vector reading = q;  // the base's part comes from the localiser
   for (double& angle : reading) {
     angle = encoder(angle);
   }

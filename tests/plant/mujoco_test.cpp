@@ -82,8 +82,12 @@ BOOST_AUTO_TEST_CASE(servos_follow_speeds_in_the_world) {
   const Vector moved = (driven->position() - before) / 0.6;
   BOOST_TEST((moved - u).tail(5).cwiseAbs().maxCoeff() <= 2e-3);
   // ahead as commanded, aside what six rollers leave of it
-  const auto ahead = [&](const Vector& motion) { return std::cos(0.7) * motion[0] + std::sin(0.7) * motion[1]; };
-  const auto aside = [&](const Vector& motion) { return -std::sin(0.7) * motion[0] + std::cos(0.7) * motion[1]; };
+  const auto ahead = [&](const Vector& motion) {
+    return std::cos(0.7) * motion[0] + std::sin(0.7) * motion[1];
+  };
+  const auto aside = [&](const Vector& motion) {
+    return -std::sin(0.7) * motion[0] + std::cos(0.7) * motion[1];
+  };
   BOOST_TEST(std::abs(ahead(moved) / ahead(u) - 1.0) <= 0.01);
   BOOST_TEST(std::abs(aside(moved) / aside(u) - 0.955) <= 0.03);  // a stretch of the roller's ripple
 }
@@ -168,7 +172,8 @@ BOOST_AUTO_TEST_CASE(the_true_tip_is_where_the_joints_say) {
   for (int i = 0; i < 100; ++i) {
     run(*driven, u, 0.02);
     terms.update(driven->position(), driven->velocity());
-    furthest = std::max(furthest, (driven->site_position("ee") - terms.frame_position(robot.frame_index("ee"))).norm());
+    furthest = std::max(furthest,
+                        (driven->site_position("ee") - terms.frame_position(robot.frame_index("ee"))).norm());
   }
   BOOST_TEST(furthest > 1e-6);
   BOOST_TEST(furthest < 1.5e-3);  // the base bounces and tilts on its rollers
@@ -273,7 +278,8 @@ BOOST_AUTO_TEST_CASE(a_diverging_simulation_is_an_error) {
   const auto sound = plant(options(Drive::torque));
   const Vector nan = Vector::Constant(8, std::numeric_limits<double>::quiet_NaN());
   check_error([&] { sound->step(nan, kPeriod); }, {"command", "finite"});
-  const TemporaryFile wild("model.xml", replaced(read_text(model_path()), "damping=\"0.1\"", "damping=\"-1e5\""));
+  const TemporaryFile wild("model.xml",
+                           replaced(read_text(model_path()), "damping=\"0.1\"", "damping=\"-1e5\""));
   MujocoOptions chosen = options(Drive::torque);
   chosen.model = wild.path();
   const auto broken = plant(chosen);
@@ -295,7 +301,8 @@ BOOST_AUTO_TEST_CASE(robots_and_faults_that_do_not_fit_are_refused) {
   check_error([&] { Mujoco(no_wheels, options(Drive::velocity), kPeriod); }, {"no mecanum_base"});
   const MujocoFaults faults{.stall = {.start = 1.0, .duration = -1.0}};
   check_error([&] { plant(options(Drive::velocity, faults)); }, {"faults: stall", "positive"});
-  const TemporaryFile bare("model.xml", replaced(read_text(model_path()), "name=\"payload\"", "name=\"hook\""));
+  const TemporaryFile bare("model.xml",
+                           replaced(read_text(model_path()), "name=\"payload\"", "name=\"hook\""));
   MujocoOptions loaded = options(Drive::velocity, {.payload = {.start = 1.0}, .payload_mass = 0.5});
   loaded.model = bare.path();
   check_error([&] { plant(loaded); }, {"no body 'payload'"});

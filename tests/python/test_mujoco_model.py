@@ -1,5 +1,4 @@
-"""The youBot for MuJoCo: its file against its generator, its bodies against the URDF in Pinocchio, its wheels against
-theory.
+"""The youBot for MuJoCo: file against generator, bodies against the URDF, wheels against theory.
 
 Not covered here: the plant that drives it (mujoco_test.cpp), whole experiments (test_experiment.py).
 """
@@ -26,7 +25,8 @@ RADIUS, LX, LY = 0.0475, 0.235, 0.150  # m
 K = LX + LY
 WHEEL_MAP = np.array([[1, -1, -K], [1, 1, K], [1, 1, -K], [1, -1, K]]) / RADIUS
 ROLLERS = 6
-# Away from its lowest point a roller is no longer at 45 degrees to the floor; over its share of the turn that costs this.
+# Away from its lowest point a roller is no longer at 45 degrees to the floor; over its share of the turn that
+# costs this.
 ASIDE = sin(pi / ROLLERS) / (pi / ROLLERS)
 MOTORS, SERVOS = 0, 1
 
@@ -78,8 +78,8 @@ def placed(model, base, arm):
 def planar_map(model):
     """Velocities of all of MuJoCo's joints for those of the URDF's: upright base, wheels and rollers at rest.
 
-    MuJoCo's free joint has linear velocity along the world's axes and angular velocity along the body's; for an upright
-    base both are the URDF's own.
+    MuJoCo's free joint has linear velocity along the world's axes and angular velocity along the body's; for
+    an upright base both are the URDF's own.
     """
     to_mujoco = np.zeros((model.nv, 8))
     to_mujoco[[0, 1, 5], [0, 1, 2]] = 1.0

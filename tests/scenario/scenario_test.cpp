@@ -174,8 +174,9 @@ BOOST_AUTO_TEST_CASE(mujoco_plants_are_read_and_refused) {
   };
   const TemporaryFile good(
       "scenario.yaml",
-      with_plant("sensors: {localisation: odometry, encoder_noise: 1.0e-3, latency: 0.004}, faults: {lost_grip: "
-                 "{wheel: back_left, at: 1.0, for: 0.5}, payload: {mass: 0.5, at: 2.0}}"));
+      with_plant(
+          "sensors: {localisation: odometry, encoder_noise: 1.0e-3, latency: 0.004}, faults: {lost_grip: "
+          "{wheel: back_left, at: 1.0, for: 0.5}, payload: {mass: 0.5, at: 2.0}}"));
   const Scenario scenario = Scenario::load(good.path());
   BOOST_TEST(scenario.plant == "mujoco");
   BOOST_TEST((scenario.mujoco.sensors.localisation == SensorOptions::Localisation::odometry));
@@ -207,10 +208,10 @@ BOOST_AUTO_TEST_CASE(mujoco_plants_are_read_and_refused) {
 
 BOOST_AUTO_TEST_CASE(moving_limits_and_tolerances_are_read) {
   const TemporaryFile file(
-      "scenario.yaml",
-      replaced(replaced(good_scenario(), "{upper: 0.35, buffer: 0.2}",
-                        "{upper: 0.35, upper_motion: {velocity: -0.1, at: 2.0, for: 1.5}}"),
-               "target: {position: [0.5, 0.1, 0.1]}", "target: {position: [0.5, 0.1, 0.1]}\n    tolerance: 0.005"));
+      "scenario.yaml", replaced(replaced(good_scenario(), "{upper: 0.35, buffer: 0.2}",
+                                         "{upper: 0.35, upper_motion: {velocity: -0.1, at: 2.0, for: 1.5}}"),
+                                "target: {position: [0.5, 0.1, 0.1]}",
+                                "target: {position: [0.5, 0.1, 0.1]}\n    tolerance: 0.005"));
   const Scenario scenario = Scenario::load(file.path());
   BOOST_TEST(scenario.tasks[0].tolerance == 1e-3);
   BOOST_TEST(scenario.tasks[1].tolerance == 5e-3);

@@ -50,9 +50,8 @@ BOOST_AUTO_TEST_CASE(logs_every_cycle_and_the_end) {
 }
 
 BOOST_AUTO_TEST_CASE(measured_and_true_state_are_told_apart) {
-  const Scenario scenario =
-      Scenario::load(source_path("scenarios/youbot_experiment_velocity.yaml"),
-                     {{"duration", "0.5"}, {"plant.sensors.localisation", "odometry"}});
+  const Scenario scenario = Scenario::load(source_path("scenarios/youbot_experiment_velocity.yaml"),
+                                           {{"duration", "0.5"}, {"plant.sensors.localisation", "odometry"}});
   Simulation simulation(scenario, {.keep_log = true});
   const Summary summary = simulation.run();
   const std::vector<std::string>& columns = simulation.log().columns();
@@ -76,8 +75,8 @@ BOOST_AUTO_TEST_CASE(moving_limits_reach_the_controller_and_the_summary) {
        {"limits.joints.base_x", "{upper: 0.35, upper_motion: {velocity: -0.1, at: 1.0, for: 1.5}}"}});
   Simulation simulation(scenario, {.keep_log = true});
   const Summary summary = simulation.run();
-  const double end = *(simulation.log().values().end() -
-                       static_cast<std::ptrdiff_t>(simulation.log().columns().size()) + 1);
+  const double end =
+      *(simulation.log().values().end() - static_cast<std::ptrdiff_t>(simulation.log().columns().size()) + 1);
   BOOST_TEST(end <= 0.2);  // q.base_x
   BOOST_TEST(end >= 0.19);
   BOOST_TEST(summary.limit_violation[0] <= 0.0);
@@ -85,10 +84,11 @@ BOOST_AUTO_TEST_CASE(moving_limits_reach_the_controller_and_the_summary) {
 }
 
 BOOST_AUTO_TEST_CASE(limits_that_meet_stop_the_run) {
-  const Scenario scenario = Scenario::load(
-      source_path("scenarios/youbot_velocity.yaml"),
-      {{"duration", "1.0"},
-       {"limits.joints.base_x", "{lower: 0.1, upper: 0.35, upper_motion: {velocity: -0.3, at: 0.0, for: 1.0}}"}});
+  const Scenario scenario =
+      Scenario::load(source_path("scenarios/youbot_velocity.yaml"),
+                     {{"duration", "1.0"},
+                      {"limits.joints.base_x",
+                       "{lower: 0.1, upper: 0.35, upper_motion: {velocity: -0.3, at: 0.0, for: 1.0}}"}});
   Simulation simulation(scenario, {});
   check_error([&] { simulation.run(); }, {"limits of base_x at 0.1", "too near"});
 }

@@ -44,7 +44,9 @@ class Controller {
   /// Moves the limits of a joint from the next update on, towards an obstacle that moves for example; call it before
   /// every update while they move. Never allocates or throws. False, and nothing changes, for a joint that is none,
   /// a rate that is not finite, or limits too near each other. A potential field stays where it was built.
-  [[nodiscard]] bool move_limits(int joint, const LimitMotion& motion) noexcept { return limits_.move(joint, motion); }
+  [[nodiscard]] bool move_limits(int joint, const LimitMotion& motion) noexcept {
+    return limits_.move(joint, motion);
+  }
 
   /// One cycle at state q (nq), v (nv) and time t [s]: writes the command u (nv). Never allocates, throws,
   /// locks, prints or reads a clock. Bad input: u = 0, Event::bad_input, nothing changed inside.

@@ -28,8 +28,8 @@ struct JointLimitOptions {
 
 /// Where the limits of a joint are at one moment, and how fast they move: a limit may stand for something that does.
 struct LimitMotion {
-  double lower;              ///< [rad or m]
-  double upper;              ///< [rad or m]
+  double lower;             ///< [rad or m]
+  double upper;             ///< [rad or m]
   double lower_rate = 0.0;  ///< [rad/s or m/s]
   double upper_rate = 0.0;  ///< [rad/s or m/s]
 };

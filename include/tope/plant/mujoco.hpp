@@ -19,13 +19,13 @@ struct Interval {
 
 /// What goes wrong in a run.
 struct MujocoFaults {
-  Interval lost_grip{};           ///< a wheel's rollers slide as on ice
-  int lost_grip_wheel = 0;        ///< 0 to 3: front left, front right, back left, back right
-  Interval stall{};               ///< no new command arrives; the last one stays
-  Interval payload{};             ///< a point mass hangs at the end-effector
-  double payload_mass = 0.0;      ///< [kg]
-  Interval obstacle{};            ///< the obstacle moves along x
-  double obstacle_velocity = 0.0; ///< [m/s]
+  Interval lost_grip{};            ///< a wheel's rollers slide as on ice
+  int lost_grip_wheel = 0;         ///< 0 to 3: front left, front right, back left, back right
+  Interval stall{};                ///< no new command arrives; the last one stays
+  Interval payload{};              ///< a point mass hangs at the end-effector
+  double payload_mass = 0.0;       ///< [kg]
+  Interval obstacle{};             ///< the obstacle moves along x
+  double obstacle_velocity = 0.0;  ///< [m/s]
 };
 
 struct MujocoOptions {

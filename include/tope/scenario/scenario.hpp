@@ -45,8 +45,9 @@ struct Scenario {
   std::vector<MovingLimit> moving_limits;
   std::string plant;  ///< "kinematic", "rigid_body" or "mujoco"
   RigidBodyOptions rigid_body;
-  MujocoOptions mujoco;  ///< what the plant's own keys say; drive and wheels follow from the controller's mode
-  Vector initial;         ///< q at t = 0 (nq)
+  MujocoOptions
+      mujoco;      ///< what the plant's own keys say; drive and wheels follow from the controller's mode
+  Vector initial;  ///< q at t = 0 (nq)
   double duration = 0.0;  ///< [s]
   int log_every = 1;      ///< cycles between rows of the log
   std::vector<ScenarioTask> tasks;

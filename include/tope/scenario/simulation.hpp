@@ -44,7 +44,7 @@ class Simulation {
   std::unique_ptr<Plant> plant_;
   Log log_;
   std::vector<double> row_;
-  RobotTerms true_terms_;                         // at the true state, which the controller may not see
+  RobotTerms true_terms_;  // at the true state, which the controller may not see
   std::vector<std::unique_ptr<Task>> true_tasks_;
   std::vector<Vector> errors_;  // of each task at the true state
   std::vector<double> norms_;
