@@ -29,6 +29,10 @@ FAULTS: dict[str, dict[str, Any]] = {
     "front left wheel without grip, 0.5 s to 1.0 s": {
         "plant.faults.lost_grip": {"wheel": "front_left", "at": 0.5, "for": 0.5}
     },
+    "the same, with odometry": {
+        "plant.faults.lost_grip": {"wheel": "front_left", "at": 0.5, "for": 0.5},
+        **ODOMETRY,
+    },
     "front left wheel without grip, 4.3 s to 4.8 s": {
         "plant.faults.lost_grip": {"wheel": "front_left", "at": 4.3, "for": 0.5}
     },
