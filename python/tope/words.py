@@ -46,7 +46,7 @@ def summary_rows(summary: Summary) -> list[tuple[str, str]]:
             if task["name"] in summary["task_error"]
         ),
         ("Joint limits", limits(summary)),
-        *(experiment_rows(summary) if summary["scenario"]["plant"] == "mujoco" else ()),
+        *(experiment_rows(summary) if summary["scenario"].get("plant") == "mujoco" else ()),
         ("Largest jump", jump(summary)),
         ("Cycles", cycles(summary)),
         ("Time per cycle", cycle_time(summary)),

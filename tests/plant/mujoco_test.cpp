@@ -153,6 +153,16 @@ BOOST_AUTO_TEST_CASE(joints_stop_at_their_stops) {
   BOOST_TEST(driven->contacts().at("arm_joint_5 at its stop") > 1.0);
 }
 
+BOOST_AUTO_TEST_CASE(servos_do_not_wind_up_at_a_stop) {
+  const auto driven = plant(options(Drive::velocity));
+  Vector u = Vector::Zero(8);
+  u[7] = 1.5;
+  run(*driven, u, 2.0);
+  u[7] = -1.5;
+  run(*driven, u, 0.1);
+  BOOST_TEST(std::abs(driven->velocity()[7] + 1.5) <= 0.1);  // it turns back at once
+}
+
 BOOST_AUTO_TEST_CASE(the_obstacle_stands_where_the_limit_of_base_x_says) {
   for (const double gap : {0.005, -0.005}) {
     const auto driven = plant(options(Drive::velocity));
