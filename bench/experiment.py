@@ -16,7 +16,7 @@ from rich.progress import track
 from rich.table import Table
 
 import tope
-from tope.words import number
+from tope.words import number, percent
 
 SCENARIOS = Path(__file__).parents[1] / "scenarios"
 SCENARIO = {mode: SCENARIOS / f"youbot_experiment_{mode}.yaml" for mode in ("velocity", "torque")}
@@ -113,9 +113,10 @@ def smoothness() -> Table:
     """Smooth against hard limits over the last half of the run.
 
     Root mean square of the end-effector's acceleration, linear and angular, and the largest total variation
-    of a joint's velocity, over the joint's speed bound.
+    of a joint's velocity, over the joint's speed bound. Jump: the command's largest in a cycle of the whole
+    run, as a share of its bound.
     """
-    rows = table("mode", "limits", "m/s2", "rad/s2", "variation of velocity", "contacts")
+    rows = table("mode", "limits", "goal", "m/s2", "rad/s2", "variation of velocity", "jump", "contacts")
     for mode in SCENARIO:
         reference: list[float] = []
         for method in (SMOOTH, *HARD):
@@ -127,7 +128,8 @@ def smoothness() -> Table:
                 number(value) + ("" if method == SMOOTH else f" (x {value / smooth:.1f})")
                 for value, smooth in zip(figures, reference, strict=True)
             ]
-            rows.add_row(mode, method, *cells, contacts(done))
+            jump = percent(done["max_command_jump"]["overall"])
+            rows.add_row(mode, method, goal(done), *cells, jump, contacts(done))
     return rows
 
 

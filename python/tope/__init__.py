@@ -16,6 +16,7 @@ from tope._core import (
     PotentialFieldOptions,
     PredefinedTime,
     Robot,
+    Scenario,
     Status,
     Task,
     TaskHandle,
@@ -23,7 +24,7 @@ from tope._core import (
 )
 from tope.compare import compare
 from tope.runs import Run
-from tope.simulation import load_run, simulate
+from tope.simulation import load_run, load_scenario, simulate
 
 __version__ = "0.1.0"
 
@@ -44,11 +45,13 @@ __all__ = [
     "PredefinedTime",
     "Robot",
     "Run",
+    "Scenario",
     "Status",
     "Task",
     "TaskHandle",
     "UnilateralOptions",
     "compare",
     "load_run",
+    "load_scenario",
     "simulate",
 ]

@@ -15,6 +15,7 @@ constexpr double kEnvelopeRounding = 0.1;  // of v_max: radius of the envelope's
 
 JointLimits::JointLimits(const Robot& robot, const JointLimitOptions& options)
     : options_(options),
+      gain_(options.gain.value_or(default_gain)),
       lower_(robot.position_lower()),
       upper_(robot.position_upper()),
       lower_rate_(Vector::Zero(robot.nv())),
@@ -28,9 +29,9 @@ JointLimits::JointLimits(const Robot& robot, const JointLimitOptions& options)
       motion_upper_(Vector::Zero(robot.nv())),
       near_upper_(static_cast<std::size_t>(robot.nv()), 0),
       near_lower_(static_cast<std::size_t>(robot.nv()), 0),
-      engagement_scale_(options.gain) {
+      engagement_scale_(gain_) {
   require_positive("limits: buffer", options.buffer);
-  require_positive("limits: gain", options.gain);
+  require_positive("limits: gain", gain_);
   require_positive("limits: servo_gain", options.servo_gain);
   require_positive("limits: margin", options.margin);
   for (const auto& [joint, buffer] : options.buffers) {
@@ -70,7 +71,7 @@ bool JointLimits::move(int joint, const LimitMotion& motion) {
 void JointLimits::update(const VectorArg& q) {
   beyond_ = -1;
   furthest_beyond_ = 0.0;
-  engagement_scale_ = options_.gain;
+  engagement_scale_ = gain_;
   for (int j = 0; j < size(); ++j) {
     const double to_upper = upper_[j] - q[j];
     const double to_lower = q[j] - lower_[j];
@@ -78,11 +79,11 @@ void JointLimits::update(const VectorArg& q) {
     side_[j] = to_upper <= to_lower ? 1.0 : -1.0;
     activation_[j] = ramp(options_.ramp, 1.0 - distance / buffer_[j]);
     const double rate = side_[j] > 0.0 ? upper_rate_[j] : lower_rate_[j];
-    target_[j] = std::isfinite(distance) ? side_[j] * options_.gain * (distance - buffer_[j]) + rate : 0.0;
+    target_[j] = std::isfinite(distance) ? side_[j] * gain_ * (distance - buffer_[j]) + rate : 0.0;
 
     const double v_max = velocity_limit_[j];
-    const double ahead = options_.gain * (to_upper - options_.margin) + upper_receding(j);
-    const double behind = options_.gain * (to_lower - options_.margin) + lower_receding(j);
+    const double ahead = gain_ * (to_upper - options_.margin) + upper_receding(j);
+    const double behind = gain_ * (to_lower - options_.margin) + lower_receding(j);
     motion_upper_[j] = std::clamp(ahead, -0.5 * v_max, v_max);
     motion_lower_[j] = -std::clamp(behind, -0.5 * v_max, v_max);
     note_distances(j, to_upper, to_lower);
@@ -92,8 +93,8 @@ void JointLimits::update(const VectorArg& q) {
 /// What both orders keep of a joint's distances to its limits.
 void JointLimits::note_distances(int joint, double to_upper, double to_lower) {
   const auto k = static_cast<std::size_t>(joint);
-  const double ahead = options_.gain * (to_upper - options_.margin) + upper_receding(joint);
-  const double behind = options_.gain * (to_lower - options_.margin) + lower_receding(joint);
+  const double ahead = gain_ * (to_upper - options_.margin) + upper_receding(joint);
+  const double behind = gain_ * (to_lower - options_.margin) + lower_receding(joint);
   near_upper_[k] = ahead < velocity_limit_[joint] ? 1 : 0;
   near_lower_[k] = behind < velocity_limit_[joint] ? 1 : 0;
   const double excess = -std::min(to_upper, to_lower);
@@ -110,11 +111,11 @@ JointLimits::Envelope JointLimits::envelope(int joint, double distance, double r
   }
   // hyperbola below both lines, so that the slope is continuous where they meet
   const double rounding = kEnvelopeRounding * v_max;
-  const double approach = options_.gain * distance + receding;
+  const double approach = gain_ * distance + receding;
   const double line = std::max(approach, -0.5 * v_max);
   const double difference = line - v_max;
   const double root = std::hypot(difference, rounding);
-  const double slope = approach > -0.5 * v_max ? options_.gain : 0.0;
+  const double slope = approach > -0.5 * v_max ? gain_ : 0.0;
   return {.speed = 0.5 * (line + v_max - root), .slope = 0.5 * slope * (1.0 - difference / root)};
 }
 
@@ -130,7 +131,7 @@ void JointLimits::update_second_order(const VectorArg& q, const VectorArg& v) {
   for (int j = 0; j < size(); ++j) {
     const double to_upper = upper_[j] - q[j];
     const double to_lower = q[j] - lower_[j];
-    const double reserve = options_.gain * buffer_[j];  // slack at which a row begins to act
+    const double reserve = gain_ * buffer_[j];  // slack at which a row begins to act
     const double upper_away = upper_receding(j);
     const double lower_away = lower_receding(j);
     const double slack_upper = envelope(j, to_upper, upper_away).speed - v[j];
@@ -144,8 +145,8 @@ void JointLimits::update_second_order(const VectorArg& q, const VectorArg& v) {
       const double distance = std::min(to_upper, to_lower);
       side_[j] = to_upper <= to_lower ? 1.0 : -1.0;
       activation_[j] = ramp(options_.ramp, 1.0 - distance / buffer_[j]);
-      const double servo = options_.gain * options_.servo_gain;
-      const double damping = options_.gain + options_.servo_gain;
+      const double servo = gain_ * options_.servo_gain;
+      const double damping = gain_ + options_.servo_gain;
       const double relative = v[j] - (side_[j] > 0.0 ? upper_rate_[j] : lower_rate_[j]);
       target_[j] =
           std::isfinite(distance) ? side_[j] * servo * (distance - buffer_[j]) - damping * relative : 0.0;
@@ -154,17 +155,16 @@ void JointLimits::update_second_order(const VectorArg& q, const VectorArg& v) {
     motion_lower_[j] = -allowed_acceleration(j, to_lower - options_.margin, lower_away, -v[j], 0.0);
     note_distances(j, to_upper, to_lower);
   }
-  engagement_scale_ = options_.gain * options_.servo_gain;
+  engagement_scale_ = gain_ * options_.servo_gain;
 }
 
 void JointLimits::blended_acceleration_bounds(const Vector& activation, double dt, Vector& lower,
                                               Vector& upper) const {
   const double kappa = ramp_slope_factor(options_.ramp);
-  const double gain = options_.gain;
-  const double c = 1.0 + 0.5 * gain * dt;
+  const double c = 1.0 + 0.5 * gain_ * dt;
   for (int j = 0; j < size(); ++j) {
-    const double travel = buffer_[j] * (1.0 - 0.5 * gain * gain * dt * dt) / (kappa * dt);
-    const double largest = std::max(0.0, (travel - velocity_limit_[j]) * gain / c);
+    const double travel = buffer_[j] * (1.0 - 0.5 * gain_ * gain_ * dt * dt) / (kappa * dt);
+    const double largest = std::max(0.0, (travel - velocity_limit_[j]) * gain_ / c);
     lower[j] = -largest;
     upper[j] = largest;
     Vector& near = side_[j] > 0.0 ? upper : lower;

@@ -75,13 +75,12 @@ def test_hard_limits_shake_the_end_effector(summary):
     smooth, hard = summary(VELOCITY), summary(POTENTIAL_FIELD)
     for task in ("position", "orientation"):
         acceleration = smooth["task_error"][task]["acceleration"]
-        assert hard["task_error"][task]["acceleration"] > 3 * acceleration
+        assert hard["task_error"][task]["acceleration"] > 10 * acceleration
     assert hard["velocity_variation"]["overall"] > 10 * smooth["velocity_variation"]["overall"]
 
 
-@pytest.mark.parametrize("method", ["switch", "potential_field"])
-def test_hard_limits_shake_it_in_torque_mode_too(summary, method):
-    smooth, hard = summary(TORQUE), summary(TORQUE, limits__method=method)
+def test_hard_limits_shake_it_in_torque_mode_too(summary):
+    smooth, hard = summary(TORQUE), summary(TORQUE, limits__method="potential_field")
     for task in ("position", "orientation"):
         acceleration = smooth["task_error"][task]["acceleration"]
         assert hard["task_error"][task]["acceleration"] > 10 * acceleration
@@ -106,7 +105,7 @@ def test_robot_gives_way_to_the_moving_obstacle(summary):
     done = summary(SCENARIOS / "faults/moving_obstacle.yaml")
     assert done["contacts"] == {}
     # the limit begins to move at once, the base does not
-    assert done["max_limit_violation"]["base_x"] < 2e-3
+    assert done["max_limit_violation"]["base_x"] < 3e-3
     assert errors(done)[0] > 20e-3  # the goal is out of reach
 
 
