@@ -26,17 +26,17 @@ ODOMETRY = {"plant.sensors.localisation": "odometry"}
 # The files in scenarios/faults hold one mode each of these.
 FAULTS: dict[str, dict[str, Any]] = {
     "none": {},
-    "front left wheel without grip, 0.5 s to 1.0 s": {
-        "plant.faults.lost_grip": {"wheel": "front_left", "at": 0.5, "for": 0.5}
+    "front left wheel without grip, 0.1 s to 0.6 s": {
+        "plant.faults.lost_grip": {"wheel": "front_left", "at": 0.1, "for": 0.5}
     },
     "the same, with odometry": {
-        "plant.faults.lost_grip": {"wheel": "front_left", "at": 0.5, "for": 0.5},
+        "plant.faults.lost_grip": {"wheel": "front_left", "at": 0.1, "for": 0.5},
         **ODOMETRY,
     },
     "front left wheel without grip, 4.3 s to 4.8 s": {
         "plant.faults.lost_grip": {"wheel": "front_left", "at": 4.3, "for": 0.5}
     },
-    "controller stalls for 5 ms at 0.3 s": {"plant.faults.stall": {"at": 0.3, "for": 0.005}},
+    "controller stalls for 5 ms at 0.05 s": {"plant.faults.stall": {"at": 0.05, "for": 0.005}},
     "controller stalls for 5 ms at 4.45 s": {"plant.faults.stall": {"at": 4.45, "for": 0.005}},
     "encoder noise of 1 mrad": {"plant.sensors.encoder_noise": 1e-3},
     "and localiser noise of 1 mm, 1 mrad": {
