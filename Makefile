@@ -49,6 +49,12 @@ campaign-torque-limits: build
 campaign-robustness: build
 	$(BIN)/python bench/robustness.py
 
+# The experiments in MuJoCo, with faults: figures of the README and of docs/experiment.md. Half a minute.
+.PHONY: experiment
+experiment: build
+	$(BIN)/python bench/experiment.py
+	$(BIN)/python bench/experiment_figure.py
+
 lint:
 	$(MAKE) build TESTS=ON
 	$(BIN)/ruff check .

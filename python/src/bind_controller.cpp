@@ -168,6 +168,21 @@ void bind_controller(nb::module_& module) {
           },
           "handle"_a, nb::kw_only(), "over"_a = 0.0, "Removes a task; `over` seconds let it fade out.")
       .def(
+          "move_limits",
+          [](Controller& controller, const std::string& joint, double lower, double upper, double lower_rate,
+             double upper_rate) {
+            const LimitMotion motion{
+                .lower = lower, .upper = upper, .lower_rate = lower_rate, .upper_rate = upper_rate};
+            if (!controller.move_limits(controller.robot().joint_index(joint), motion)) {
+              throw ConfigError(
+                  "move_limits: " + joint +
+                  ": the limits must be further apart than their buffers, and the rates finite");
+            }
+          },
+          "joint"_a, nb::kw_only(), "lower"_a, "upper"_a, "lower_rate"_a = 0.0, "upper_rate"_a = 0.0,
+          "Moves a joint's limits [rad or m] from the next update on; the rates [rad/s or m/s] say how they "
+          "go on.")
+      .def(
           "update",
           [](Controller& controller, const Vector& q, const Vector& v, double t) {
             Vector u = Vector::Zero(controller.robot().nv());

@@ -58,6 +58,7 @@ nb::dict describe_scenario(const Scenario& scenario) {
   entry["description"] = scenario.description;
   entry["file"] = scenario.file.string();
   entry["mode"] = scenario.controller.mode == Mode::torque ? "torque" : "velocity";
+  entry["plant"] = scenario.plant;
   entry["method"] = to_string(scenario.controller.limits.method);
   entry["dt"] = scenario.controller.dt;
   entry["duration"] = scenario.duration;
@@ -90,6 +91,8 @@ nb::dict describe_summary(const Scenario& scenario, const Summary& summary) {
     nb::dict error;
     error["final"] = result.final_error;
     error["at_goal_time"] = optional_number(result.at_goal_time);
+    error["measured"] = result.measured_error;
+    error["acceleration"] = result.acceleration;
     errors[name.c_str()] = error;
   }
   nb::dict cycle_time;
@@ -102,6 +105,9 @@ nb::dict describe_summary(const Scenario& scenario, const Summary& summary) {
   entry["max_limit_violation"] = by_joint(robot, summary.limit_violation, ones);
   entry["max_command_jump"] = by_joint(robot, summary.command_jump, ones);
   entry["command_variation"] = by_joint(robot, summary.command_variation, scenario.command_bound());
+  entry["velocity_variation"] = by_joint(robot, summary.velocity_variation, robot.velocity_limit());
+  entry["sensor_error"] = by_joint(robot, summary.sensor_error, ones);
+  entry["contacts"] = nb::cast(summary.contacts);
   entry["buffer_time"] = by_joint(robot, summary.buffer_time, ones);
   entry["task_error"] = errors;
   entry["time_to_goal"] = optional_number(summary.time_to_goal);

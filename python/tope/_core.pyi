@@ -151,6 +151,11 @@ class Controller:
     def remove(self, handle: TaskHandle, *, over: float = 0.0) -> None:
         """Removes a task; `over` seconds let it fade out."""
 
+    def move_limits(self, joint: str, *, lower: float, upper: float, lower_rate: float = 0.0, upper_rate: float = 0.0) -> None:
+        """
+        Moves a joint's limits [rad or m] from the next update on; the rates [rad/s or m/s] say how they go on.
+        """
+
     def update(self, q: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], v: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], t: float) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]:
         """One cycle: the command (nv) at state q (nq), v (nv) and time t [s]."""
 

@@ -46,9 +46,30 @@ def summary_rows(summary: Summary) -> list[tuple[str, str]]:
             if task["name"] in summary["task_error"]
         ),
         ("Joint limits", limits(summary)),
+        *(experiment_rows(summary) if summary["scenario"].get("plant") == "mujoco" else ()),
         ("Largest jump", jump(summary)),
         ("Cycles", cycles(summary)),
         ("Time per cycle", cycle_time(summary)),
+    ]
+
+
+def experiment_rows(summary: Summary) -> list[tuple[str, str]]:
+    """What only a plant with sensors and contacts has to tell."""
+    joint, off = worst(summary["sensor_error"])
+    units = {each["name"]: each["unit"] for each in summary["scenario"]["joints"]}
+    errors = summary["task_error"]
+    seen = (
+        f"{task['name']} {number(errors[task['name']]['measured'], unit(task))}"
+        for task in summary["scenario"]["tasks"]
+        if task["name"] in errors
+    )
+    touched = (f"{what} ({number(force)} N or Nm)" for what, force in summary["contacts"].items())
+    return [
+        ("Contacts", ", ".join(touched) or "none"),
+        (
+            "As the robot sees it",
+            f"{', '.join(seen)}; its sensors are off by {number(off, units.get(joint, ''))} ({joint})",
+        ),
     ]
 
 

@@ -59,6 +59,15 @@ void apply_override(const YAML::Node& root, const std::string& path, const std::
 
 }  // namespace
 
+std::size_t choice(const YamlReader& yaml, const std::string& key, const std::string& value,
+                   const std::vector<std::string>& names) {
+  const auto found = std::find(names.begin(), names.end(), value);
+  if (found == names.end()) {
+    yaml.fail(key, "unknown value '" + value + "'" + name_hint(value, names));
+  }
+  return static_cast<std::size_t>(found - names.begin());
+}
+
 YamlReader::YamlReader(const YAML::Node& node, std::string prefix, std::shared_ptr<const Source> source)
     : node_(node),
       prefix_(std::move(prefix)),

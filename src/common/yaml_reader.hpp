@@ -18,6 +18,12 @@ namespace tope {
 /// One "--set key=value": a dotted path (list items by number) and a YAML value.
 using Overrides = std::map<std::string, std::string>;
 
+class YamlReader;
+
+/// Place of `value` among `names`. Errors: ConfigError at `key`, with the nearest known name.
+std::size_t choice(const YamlReader& yaml, const std::string& key, const std::string& value,
+                   const std::vector<std::string>& names);
+
 /// Strict view of one YAML map. Reads typed values, remembers which keys were asked for, and finish() refuses
 /// the rest. Every error names file, line and key. Errors: ConfigError.
 class YamlReader {

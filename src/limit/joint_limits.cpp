@@ -18,6 +18,8 @@ JointLimits::JointLimits(const Robot& robot, const JointLimitOptions& options)
       gain_(options.gain.value_or(default_gain)),
       lower_(robot.position_lower()),
       upper_(robot.position_upper()),
+      lower_rate_(Vector::Zero(robot.nv())),
+      upper_rate_(Vector::Zero(robot.nv())),
       velocity_limit_(robot.velocity_limit()),
       buffer_(Vector::Constant(robot.nv(), options.buffer)),
       activation_(Vector::Zero(robot.nv())),
@@ -38,7 +40,7 @@ JointLimits::JointLimits(const Robot& robot, const JointLimitOptions& options)
   }
   for (int j = 0; j < size(); ++j) {
     const double range = upper_[j] - lower_[j];
-    const double needed = 2.0 * std::max(buffer_[j], options.margin);
+    const double needed = range_needed(j);
     if (range <= needed) {
       throw ConfigError("limits: the buffers of " + robot.joint_names()[static_cast<std::size_t>(j)] +
                         " overlap: its range " + std::to_string(range) +
@@ -52,6 +54,20 @@ bool JointLimits::limited(int joint) const {
   return std::isfinite(lower_[joint]) || std::isfinite(upper_[joint]);
 }
 
+double JointLimits::range_needed(int joint) const { return 2.0 * std::max(buffer_[joint], options_.margin); }
+
+bool JointLimits::move(int joint, const LimitMotion& motion) {
+  if (joint < 0 || joint >= size() || !std::isfinite(motion.lower_rate) ||
+      !std::isfinite(motion.upper_rate) || !(motion.upper - motion.lower > range_needed(joint))) {
+    return false;
+  }
+  lower_[joint] = motion.lower;
+  upper_[joint] = motion.upper;
+  lower_rate_[joint] = motion.lower_rate;
+  upper_rate_[joint] = motion.upper_rate;
+  return true;
+}
+
 void JointLimits::update(const VectorArg& q) {
   beyond_ = -1;
   furthest_beyond_ = 0.0;
@@ -62,11 +78,14 @@ void JointLimits::update(const VectorArg& q) {
     const double distance = std::min(to_upper, to_lower);
     side_[j] = to_upper <= to_lower ? 1.0 : -1.0;
     activation_[j] = ramp(options_.ramp, 1.0 - distance / buffer_[j]);
-    target_[j] = std::isfinite(distance) ? side_[j] * gain_ * (distance - buffer_[j]) : 0.0;
+    const double rate = side_[j] > 0.0 ? upper_rate_[j] : lower_rate_[j];
+    target_[j] = std::isfinite(distance) ? side_[j] * gain_ * (distance - buffer_[j]) + rate : 0.0;
 
     const double v_max = velocity_limit_[j];
-    motion_upper_[j] = std::clamp(gain_ * (to_upper - options_.margin), -0.5 * v_max, v_max);
-    motion_lower_[j] = -std::clamp(gain_ * (to_lower - options_.margin), -0.5 * v_max, v_max);
+    const double ahead = gain_ * (to_upper - options_.margin) + upper_receding(j);
+    const double behind = gain_ * (to_lower - options_.margin) + lower_receding(j);
+    motion_upper_[j] = std::clamp(ahead, -0.5 * v_max, v_max);
+    motion_lower_[j] = -std::clamp(behind, -0.5 * v_max, v_max);
     note_distances(j, to_upper, to_lower);
   }
 }
@@ -74,8 +93,10 @@ void JointLimits::update(const VectorArg& q) {
 /// What both orders keep of a joint's distances to its limits.
 void JointLimits::note_distances(int joint, double to_upper, double to_lower) {
   const auto k = static_cast<std::size_t>(joint);
-  near_upper_[k] = gain_ * (to_upper - options_.margin) < velocity_limit_[joint] ? 1 : 0;
-  near_lower_[k] = gain_ * (to_lower - options_.margin) < velocity_limit_[joint] ? 1 : 0;
+  const double ahead = gain_ * (to_upper - options_.margin) + upper_receding(joint);
+  const double behind = gain_ * (to_lower - options_.margin) + lower_receding(joint);
+  near_upper_[k] = ahead < velocity_limit_[joint] ? 1 : 0;
+  near_lower_[k] = behind < velocity_limit_[joint] ? 1 : 0;
   const double excess = -std::min(to_upper, to_lower);
   if (excess > furthest_beyond_) {
     furthest_beyond_ = excess;
@@ -83,23 +104,25 @@ void JointLimits::note_distances(int joint, double to_upper, double to_lower) {
   }
 }
 
-JointLimits::Envelope JointLimits::envelope(int joint, double distance) const {
+JointLimits::Envelope JointLimits::envelope(int joint, double distance, double receding) const {
   const double v_max = velocity_limit_[joint];
   if (!std::isfinite(distance)) {
     return {.speed = v_max, .slope = 0.0};
   }
   // hyperbola below both lines, so that the slope is continuous where they meet
   const double rounding = kEnvelopeRounding * v_max;
-  const double line = std::max(gain_ * distance, -0.5 * v_max);
+  const double approach = gain_ * distance + receding;
+  const double line = std::max(approach, -0.5 * v_max);
   const double difference = line - v_max;
   const double root = std::hypot(difference, rounding);
-  const double slope = gain_ * distance > -0.5 * v_max ? gain_ : 0.0;
+  const double slope = approach > -0.5 * v_max ? gain_ : 0.0;
   return {.speed = 0.5 * (line + v_max - root), .slope = 0.5 * slope * (1.0 - difference / root)};
 }
 
-double JointLimits::allowed_acceleration(int joint, double distance, double speed, double slack) const {
-  const Envelope allowed = envelope(joint, distance);
-  return -allowed.slope * speed - options_.servo_gain * (speed - allowed.speed + slack);
+double JointLimits::allowed_acceleration(int joint, double distance, double receding, double speed,
+                                         double slack) const {
+  const Envelope allowed = envelope(joint, distance, receding);
+  return -allowed.slope * (speed - receding) - options_.servo_gain * (speed - allowed.speed + slack);
 }
 
 void JointLimits::update_second_order(const VectorArg& q, const VectorArg& v) {
@@ -109,24 +132,27 @@ void JointLimits::update_second_order(const VectorArg& q, const VectorArg& v) {
     const double to_upper = upper_[j] - q[j];
     const double to_lower = q[j] - lower_[j];
     const double reserve = gain_ * buffer_[j];  // slack at which a row begins to act
-    const double slack_upper = envelope(j, to_upper).speed - v[j];
-    const double slack_lower = envelope(j, to_lower).speed + v[j];
+    const double upper_away = upper_receding(j);
+    const double lower_away = lower_receding(j);
+    const double slack_upper = envelope(j, to_upper, upper_away).speed - v[j];
+    const double slack_lower = envelope(j, to_lower, lower_away).speed + v[j];
     if (options_.measure == Measure::predicted) {
       side_[j] = slack_upper <= slack_lower ? 1.0 : -1.0;
       activation_[j] = ramp(options_.ramp, 1.0 - std::min(slack_upper, slack_lower) / reserve);
-      target_[j] = side_[j] > 0.0 ? allowed_acceleration(j, to_upper, v[j], reserve)
-                                  : -allowed_acceleration(j, to_lower, -v[j], reserve);
+      target_[j] = side_[j] > 0.0 ? allowed_acceleration(j, to_upper, upper_away, v[j], reserve)
+                                  : -allowed_acceleration(j, to_lower, lower_away, -v[j], reserve);
     } else {
       const double distance = std::min(to_upper, to_lower);
       side_[j] = to_upper <= to_lower ? 1.0 : -1.0;
       activation_[j] = ramp(options_.ramp, 1.0 - distance / buffer_[j]);
       const double servo = gain_ * options_.servo_gain;
       const double damping = gain_ + options_.servo_gain;
+      const double relative = v[j] - (side_[j] > 0.0 ? upper_rate_[j] : lower_rate_[j]);
       target_[j] =
-          std::isfinite(distance) ? side_[j] * servo * (distance - buffer_[j]) - damping * v[j] : 0.0;
+          std::isfinite(distance) ? side_[j] * servo * (distance - buffer_[j]) - damping * relative : 0.0;
     }
-    motion_upper_[j] = allowed_acceleration(j, to_upper - options_.margin, v[j], 0.0);
-    motion_lower_[j] = -allowed_acceleration(j, to_lower - options_.margin, -v[j], 0.0);
+    motion_upper_[j] = allowed_acceleration(j, to_upper - options_.margin, upper_away, v[j], 0.0);
+    motion_lower_[j] = -allowed_acceleration(j, to_lower - options_.margin, lower_away, -v[j], 0.0);
     note_distances(j, to_upper, to_lower);
   }
   engagement_scale_ = gain_ * options_.servo_gain;

@@ -1,6 +1,8 @@
 #include <tope/common/error.hpp>
 #include <tope/robot/mecanum_base.hpp>
 
+#include <Eigen/Geometry>
+
 #include <cmath>
 
 namespace tope {
@@ -31,8 +33,17 @@ Eigen::Vector3d MecanumBase::base_wrench(const Eigen::Ref<const Eigen::VectorXd>
   return to_base(u[options_.joints[0]], u[options_.joints[1]], u[options_.joints[2]], yaw);
 }
 
-MecanumBase::Wheels MecanumBase::minimum_norm_torques(const Eigen::Vector3d& wrench) const {
+Eigen::Vector3d MecanumBase::twist(const Wheels& speeds) const {
   // the columns of the map are orthogonal, so its pseudo-inverse divides by their squared norms
+  return (wheel_map_.transpose() * speeds).cwiseQuotient(wheel_map_.colwise().squaredNorm().transpose());
+}
+
+Eigen::Vector3d MecanumBase::to_world(const Eigen::Vector3d& motion, double yaw) {
+  return Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) * motion;
+}
+
+MecanumBase::Wheels MecanumBase::minimum_norm_torques(const Eigen::Vector3d& wrench) const {
+  // orthogonal columns again
   return wheel_map_ * wrench.cwiseQuotient(wheel_map_.colwise().squaredNorm().transpose());
 }
 
@@ -41,6 +52,12 @@ MecanumBase::Wheels MecanumBase::minimum_peak_torques(const Eigen::Vector3d& wre
   const Wheels torques = minimum_norm_torques(wrench);
   const Wheels turned = idle.cwiseProduct(torques);
   return torques - 0.5 * (turned.maxCoeff() + turned.minCoeff()) * idle;
+}
+
+MecanumBase::Wheels MecanumBase::wheel_torques(const Eigen::Vector3d& wrench,
+                                               WheelDistribution distribution) const {
+  return distribution == WheelDistribution::minimum_peak ? minimum_peak_torques(wrench)
+                                                         : minimum_norm_torques(wrench);
 }
 
 Eigen::Vector3d MecanumBase::reflected_inertia() const {

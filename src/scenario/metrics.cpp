@@ -8,8 +8,6 @@
 namespace tope {
 namespace {
 
-constexpr double kReached = 1e-3;  // m or rad
-
 double percentile(const std::vector<double>& sorted, double fraction) {
   if (sorted.empty()) {
     return 0.0;
@@ -35,6 +33,11 @@ Metrics::Metrics(Vector lower, Vector upper, Vector buffer, Vector bound, std::v
   summary_.command_variation = Vector::Zero(n);
   summary_.buffer_time = Vector::Zero(n);
   cycle_times_.reserve(static_cast<std::size_t>(cycles));
+}
+
+void Metrics::move_limits(const Vector& lower, const Vector& upper) {
+  lower_ = lower;
+  upper_ = upper;
 }
 
 void Metrics::observe(double t, const Vector& q, const Vector& u, const std::vector<double>& errors,
@@ -78,7 +81,7 @@ void Metrics::observe_state(double t, const Vector& q, const std::vector<double>
     if (goal_time.has_value() && !result.at_goal_time.has_value() && t >= *goal_time - 0.5 * dt_) {
       result.at_goal_time = errors[i];
     }
-    reached = reached && (!tasks_[i].goal || errors[i] < kReached);
+    reached = reached && (!tasks_[i].goal || errors[i] < tasks_[i].tolerance);
     any_goal = any_goal || tasks_[i].goal;
   }
   if (!reached || !any_goal) {

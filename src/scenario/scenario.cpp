@@ -1,7 +1,7 @@
 #include "../common/yaml_reader.hpp"
+#include "mujoco_reader.hpp"
 #include "task_reader.hpp"
 
-#include <tope/common/names.hpp>
 #include <tope/limit/servo_gains.hpp>
 #include <tope/scenario/scenario.hpp>
 #include <tope/task/damping.hpp>
@@ -23,15 +23,6 @@ auto located(const YamlReader& yaml, const std::string& key, Build build) {
   }
 }
 
-std::size_t choice(const YamlReader& yaml, const std::string& key, const std::string& value,
-                   const std::vector<std::string>& names) {
-  const auto found = std::find(names.begin(), names.end(), value);
-  if (found == names.end()) {
-    yaml.fail(key, "unknown value '" + value + "'" + name_hint(value, names));
-  }
-  return static_cast<std::size_t>(found - names.begin());
-}
-
 Robot read_robot(const YamlReader& yaml) {
   const std::filesystem::path urdf = yaml.path("urdf");
   const bool has_config = yaml.has("config");
@@ -40,8 +31,24 @@ Robot read_robot(const YamlReader& yaml) {
   return has_config ? Robot::from_urdf(urdf, config) : Robot::from_urdf(urdf);
 }
 
+/// `speed_bound` is the joint's: beyond its limit it is led back at no more than half of that.
+MovingLimit read_moving_limit(const YamlReader& yaml, int joint, double speed_bound) {
+  MovingLimit moving;
+  moving.joint = joint;
+  moving.velocity = yaml.number("velocity");
+  if (std::abs(moving.velocity) >= 0.5 * speed_bound) {
+    yaml.fail("velocity", "must be below half of the speed bound, " + std::to_string(0.5 * speed_bound) +
+                              ", got " + std::to_string(moving.velocity));
+  }
+  moving.start = yaml.number("at");
+  moving.duration = yaml.positive("for");
+  yaml.finish();
+  return moving;
+}
+
 /// `limits.joints`: limits and buffers that this scenario sets, an obstacle for example.
-void read_joint_limits(const YamlReader& joints, Robot& robot, JointLimitOptions& options) {
+void read_joint_limits(const YamlReader& joints, Robot& robot, JointLimitOptions& options,
+                       std::vector<MovingLimit>& moving) {
   Vector lower = robot.position_lower();
   Vector upper = robot.position_upper();
   Vector velocity = robot.velocity_limit();
@@ -53,6 +60,9 @@ void read_joint_limits(const YamlReader& joints, Robot& robot, JointLimitOptions
     velocity[joint] = yaml.positive("velocity", velocity[joint]);
     if (yaml.has("buffer")) {
       options.buffers[name] = yaml.positive("buffer");
+    }
+    if (const auto motion = yaml.optional_map("upper_motion")) {
+      moving.push_back(read_moving_limit(*motion, joint, velocity[joint]));
     }
     yaml.finish();
     located(joints, name, [&] { robot.set_position_limits(lower, upper); });
@@ -85,7 +95,7 @@ void read_servo(const YamlReader& yaml, JointLimitOptions& options) {
   options.servo_gain = gains.servo_gain;
 }
 
-LimitOptions read_limits(const YamlReader& yaml, Robot& robot) {
+LimitOptions read_limits(const YamlReader& yaml, Robot& robot, std::vector<MovingLimit>& moving) {
   LimitOptions limits;
   const std::string method = yaml.text("method", to_string(limits.method));
   limits.method = located(yaml, "method", [&] { return limit_method_from(method); });
@@ -100,7 +110,7 @@ LimitOptions read_limits(const YamlReader& yaml, Robot& robot) {
   static const std::vector<std::string> handling{"enforce", "report"};
   limits.enforce_conditions = choice(yaml, "conditions", yaml.text("conditions", handling[0]), handling) == 0;
   if (const auto joints = yaml.optional_map("joints")) {
-    read_joint_limits(*joints, robot, limits.rows);
+    read_joint_limits(*joints, robot, limits.rows, moving);
   }
   if (const auto law = yaml.optional_map("unilateral")) {
     limits.unilateral.damping = positive_if_given(*law, "damping");
@@ -182,12 +192,15 @@ void read_plant(const YamlReader& yaml, Scenario& scenario) {
     return;
   }
   const std::string type = plant->text("type", scenario.plant);
-  choice(*plant, "type", type, {"kinematic", "rigid_body"});
-  if (type != scenario.plant) {
-    plant->fail("type",
-                "'" + type + "' does not follow commands of this mode; expected '" + scenario.plant + "'");
+  choice(*plant, "type", type, {"kinematic", "rigid_body", "mujoco"});
+  if (type != scenario.plant && type != "mujoco") {
+    plant->fail("type", "'" + type + "' does not follow commands of this mode; expected '" + scenario.plant +
+                            "' or 'mujoco'");
   }
-  if (torque) {
+  scenario.plant = type;
+  if (type == "mujoco") {
+    scenario.mujoco = read_mujoco(*plant);
+  } else if (torque) {
     scenario.rigid_body = read_rigid_body(*plant);
   }
   plant->finish();
@@ -271,6 +284,10 @@ void add_notices(const Robot& robot, Scenario& scenario) {
 
 }  // namespace
 
+double MovingLimit::moved(double t) const { return velocity * std::clamp(t - start, 0.0, duration); }
+
+double MovingLimit::rate(double t) const { return t >= start && t < start + duration ? velocity : 0.0; }
+
 const Vector& Scenario::command_bound() const {
   return controller.mode == Mode::torque ? robot->effort_limit() : robot->velocity_limit();
 }
@@ -291,7 +308,7 @@ Scenario Scenario::load(const std::filesystem::path& file,
   }
   Robot robot = read_robot(yaml.map("robot"));
   if (const auto limits = yaml.optional_map("limits")) {
-    scenario.controller.limits = read_limits(*limits, robot);
+    scenario.controller.limits = read_limits(*limits, robot, scenario.moving_limits);
   }
   if (const auto singularities = yaml.optional_map("singularities")) {
     scenario.controller.singularities = read_singularities(*singularities);

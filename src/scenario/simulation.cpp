@@ -1,4 +1,6 @@
+#include <tope/common/error.hpp>
 #include <tope/plant/kinematic.hpp>
+#include <tope/plant/mujoco.hpp>
 #include <tope/scenario/simulation.hpp>
 
 #include <chrono>
@@ -8,6 +10,8 @@ namespace tope {
 namespace {
 
 constexpr int kProgressSteps = 200;
+
+bool has_sensors(const Scenario& scenario) { return scenario.plant == "mujoco"; }
 
 std::vector<std::string> log_columns(const Scenario& scenario) {
   std::vector<std::string> columns{"t"};
@@ -33,12 +37,24 @@ std::vector<std::string> log_columns(const Scenario& scenario) {
       columns.push_back("wheel." + std::to_string(i));
     }
   }
+  if (has_sensors(scenario)) {
+    for (const std::string& joint : joints) {
+      columns.push_back("measured." + joint);
+    }
+  }
   return columns;
 }
 
 std::unique_ptr<Plant> make_plant(const Scenario& scenario) {
   if (scenario.plant == "rigid_body") {
     return std::make_unique<RigidBody>(*scenario.robot, scenario.rigid_body, scenario.controller.dt);
+  }
+  if (scenario.plant == "mujoco") {
+    MujocoOptions options = scenario.mujoco;
+    options.drive = scenario.controller.mode == Mode::torque ? MujocoOptions::Drive::torque
+                                                             : MujocoOptions::Drive::velocity;
+    options.wheel_distribution = scenario.controller.wheel_distribution;
+    return std::make_unique<Mujoco>(*scenario.robot, options, scenario.controller.dt);
   }
   return std::make_unique<Kinematic>(*scenario.robot);
 }
@@ -47,7 +63,10 @@ std::vector<Metrics::TaskInfo> task_infos(const Scenario& scenario) {
   std::vector<Metrics::TaskInfo> infos;
   infos.reserve(scenario.tasks.size());
   for (const ScenarioTask& task : scenario.tasks) {
-    infos.push_back({.name = task.name, .goal = task.task->is_goal(), .goal_time = task.task->duration()});
+    infos.push_back({.name = task.name,
+                     .goal = task.task->is_goal(),
+                     .goal_time = task.task->duration(),
+                     .tolerance = task.tolerance});
   }
   return infos;
 }
@@ -71,12 +90,15 @@ Simulation::Simulation(const Scenario& scenario, const SimulationOptions& option
       options_(options),
       controller_(*scenario.robot, scenario.controller),
       plant_(make_plant(scenario)),
-      log_(log_columns(scenario), options.log_file, options.keep_log) {
+      log_(log_columns(scenario), options.log_file, options.keep_log),
+      true_terms_(*scenario.robot) {
   for (const ScenarioTask& task : scenario_.tasks) {
     handles_.push_back(controller_.add(task.level, *task.task));
+    true_tasks_.push_back(task.task->clone());
   }
   row_.reserve(log_.columns().size());
   errors_.resize(scenario_.tasks.size());
+  norms_.resize(scenario_.tasks.size());
 }
 
 Summary Simulation::run() {
@@ -86,15 +108,18 @@ Summary Simulation::run() {
   const JointLimits& limits = controller_.limits();
   Metrics metrics(limits.lower(), limits.upper(), buffers(limits), scenario_.command_bound(),
                   task_infos(scenario_), cycles, dt);
+  Smoothness smoothness(scenario_.robot->nv(), static_cast<int>(handles_.size()), cycles, dt);
   plant_->reset(scenario_.initial);
   Vector u = Vector::Zero(scenario_.robot->nv());
   for (int cycle = 0; cycle < cycles; ++cycle) {
     const double t = cycle * dt;
+    move_limits(t, metrics);
     const auto begin = std::chrono::steady_clock::now();
-    controller_.update(plant_->position(), plant_->velocity(), t, u);
+    controller_.update(plant_->measured_position(), plant_->measured_velocity(), t, u);
     const double cycle_time = elapsed_us(begin);
-    evaluate_errors();
-    metrics.observe(t, plant_->position(), u, errors_, controller_.status(), cycle_time);
+    evaluate_errors(t);
+    metrics.observe(t, plant_->position(), u, norms_, controller_.status(), cycle_time);
+    smoothness.observe(plant_->velocity(), errors_);
     if (cycle % scenario_.log_every == 0) {
       write_row(t, u);
     }
@@ -104,29 +129,59 @@ Summary Simulation::run() {
     }
   }
   // the state that the last command led to
-  controller_.update(plant_->position(), plant_->velocity(), cycles * dt, u);
-  evaluate_errors();
-  metrics.observe_end(cycles * dt, plant_->position(), errors_);
+  move_limits(cycles * dt, metrics);
+  controller_.update(plant_->measured_position(), plant_->measured_velocity(), cycles * dt, u);
+  evaluate_errors(cycles * dt);
+  metrics.observe_end(cycles * dt, plant_->position(), norms_);
+  smoothness.observe(plant_->velocity(), errors_);
   write_row(cycles * dt, u);
-  return metrics.summary();
+  return complete(metrics.summary(), smoothness);
 }
 
-void Simulation::evaluate_errors() {
-  for (std::size_t i = 0; i < handles_.size(); ++i) {
-    errors_[i] = controller_.task(handles_[i]).error().norm();
+/// Tells the controller where the limits are, as a robot that sees the obstacle would.
+void Simulation::move_limits(double t, Metrics& metrics) {
+  const Robot& robot = *scenario_.robot;
+  for (const MovingLimit& moving : scenario_.moving_limits) {
+    const LimitMotion motion{.lower = robot.position_lower()[moving.joint],
+                             .upper = robot.position_upper()[moving.joint] + moving.moved(t),
+                             .upper_rate = moving.rate(t)};
+    if (!controller_.move_limits(moving.joint, motion)) {
+      throw Error("limits of " + robot.joint_names()[static_cast<std::size_t>(moving.joint)] + " at " +
+                  std::to_string(t) + " s: the upper one comes too near the lower one for their buffers");
+    }
   }
+  metrics.move_limits(controller_.limits().lower(), controller_.limits().upper());
+}
+
+void Simulation::evaluate_errors(double t) {
+  true_terms_.update(plant_->position(), plant_->velocity());
+  for (std::size_t i = 0; i < true_tasks_.size(); ++i) {
+    true_tasks_[i]->update(true_terms_, t);
+    errors_[i] = true_tasks_[i]->error();
+    norms_[i] = errors_[i].norm();
+  }
+}
+
+/// Adds what the loop knows at its end.
+Summary Simulation::complete(Summary summary, const Smoothness& smoothness) const {
+  for (std::size_t i = 0; i < handles_.size(); ++i) {
+    TaskResult& result = summary.tasks[scenario_.tasks[i].name];
+    result.measured_error = controller_.task(handles_[i]).error().norm();
+    result.acceleration = smoothness.acceleration(static_cast<int>(i));
+  }
+  summary.velocity_variation = smoothness.velocity_variation();
+  summary.sensor_error = (plant_->measured_position() - plant_->position()).cwiseAbs();
+  summary.contacts = plant_->contacts();
+  return summary;
 }
 
 /// Speeds [rad/s] or torques [Nm] of the wheels under the command u.
 MecanumBase::Wheels Simulation::wheel_commands(const MecanumBase& base, const Vector& u) const {
-  const double yaw = plant_->position()[base.options().joints[2]];
+  const double yaw = plant_->measured_position()[base.options().joints[2]];
   if (scenario_.controller.mode == Mode::velocity) {
     return base.wheel_speeds(u, yaw);
   }
-  const Eigen::Vector3d wrench = base.base_wrench(u, yaw);
-  return scenario_.controller.wheel_distribution == WheelDistribution::minimum_peak
-             ? base.minimum_peak_torques(wrench)
-             : base.minimum_norm_torques(wrench);
+  return base.wheel_torques(base.base_wrench(u, yaw), scenario_.controller.wheel_distribution);
 }
 
 void Simulation::write_row(double t, const Vector& u) {
@@ -137,12 +192,15 @@ void Simulation::write_row(double t, const Vector& u) {
   append(u);
   append(controller_.upper_activation());
   append(controller_.lower_activation());
-  for (const TaskHandle handle : handles_) {
-    append(controller_.task(handle).error());
+  for (const Vector& error : errors_) {
+    append(error);
   }
   row_.push_back(controller_.status().scale);
   if (const auto& base = scenario_.robot->base()) {
     append(wheel_commands(*base, u));
+  }
+  if (has_sensors(scenario_)) {
+    append(plant_->measured_position());
   }
   log_.write(row_, event_names(controller_.status()));
 }

@@ -154,6 +154,7 @@ ScenarioTask read_task(const YamlReader& yaml, const Robot& robot) {
     }
     yaml.fail(blamed_key(yaml, message), message);
   }
+  task.tolerance = yaml.positive("tolerance", task.tolerance);
   yaml.finish();
   return task;
 }

@@ -113,6 +113,19 @@ def test_moving_target_is_led_by_its_velocity(robot: tope.Robot) -> None:
     assert jacobian @ c.update(Q0, np.zeros(8), 0.0) == pytest.approx(velocity, abs=1e-12)
 
 
+def test_limits_move(robot: tope.Robot) -> None:
+    c = controller(robot)
+    c.add(tope.JointPosition(target={"base_x": 5.0}), level=1)
+    assert c.update(Q0, np.zeros(8), 0.0)[0] == pytest.approx(0.8, abs=0.011)  # headroom
+    # 0.05 m ahead, coming at 0.1 m/s: 10/s of the distance less the margin, less the rate
+    c.move_limits("base_x", lower=-50.0, upper=0.2, upper_rate=-0.1)
+    assert c.update(Q0, np.zeros(8), 1e-3)[0] == pytest.approx(10 * 0.049 - 0.1, abs=0.011)
+    with pytest.raises(tope.ConfigError, match=r"move_limits: base_x: .* further apart"):
+        c.move_limits("base_x", lower=0.0, upper=0.1)
+    with pytest.raises(tope.ConfigError, match="unknown joint 'base_z'"):
+        c.move_limits("base_z", lower=0.0, upper=1.0)
+
+
 def test_error_in_a_moving_target_is_raised_after_the_cycle(robot: tope.Robot) -> None:
     def target(t: float) -> tuple[list[float], list[float]]:
         if t > 0:

@@ -74,6 +74,29 @@ BOOST_AUTO_TEST_CASE(forward_rolls_every_wheel_forward) {
   BOOST_TEST((left_turn[0] < 0.0 && left_turn[1] > 0.0 && left_turn[2] < 0.0 && left_turn[3] > 0.0));
 }
 
+BOOST_AUTO_TEST_CASE(twist_and_to_world_turn_wheel_speeds_back_into_motion) {
+  const MecanumBase base(youbot_base);
+  Random random(14);
+  for (int trial = 0; trial < 20; ++trial) {
+    const Vector v = random.vector(3);
+    const double yaw = random.uniform(-3.0, 3.0);
+    const Eigen::Vector4d slipping(1.0, 1.0, -1.0, -1.0);  // speeds that no motion has
+    const Eigen::Vector3d twist = base.twist(base.wheel_speeds(v, yaw) + random.normal() * slipping);
+    BOOST_TEST((MecanumBase::to_world(twist, yaw) - v).norm() <= 1e-12);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(wheel_torques_follow_the_distribution) {
+  const MecanumBase base(youbot_base);
+  const Eigen::Vector3d wrench(30.0, 20.0, 10.0);
+  const auto torques = [&](WheelDistribution distribution) {
+    return base.wheel_torques(wrench, distribution);
+  };
+  BOOST_TEST(torques(WheelDistribution::minimum_norm) == base.minimum_norm_torques(wrench));
+  BOOST_TEST(torques(WheelDistribution::minimum_peak) == base.minimum_peak_torques(wrench));
+  BOOST_TEST(base.minimum_norm_torques(wrench) != base.minimum_peak_torques(wrench));
+}
+
 BOOST_AUTO_TEST_CASE(rotors_add_their_reflected_inertia) {
   const MecanumBase base(youbot_base);
   const Matrix map = base.wheel_map();

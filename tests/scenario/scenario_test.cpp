@@ -7,6 +7,7 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -84,7 +85,7 @@ BOOST_AUTO_TEST_CASE(sets_what_it_says) {
 
 BOOST_AUTO_TEST_CASE(shipped_scenarios_load) {
   int count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(source_path("scenarios"))) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(source_path("scenarios"))) {
     if (entry.path().extension() == ".yaml") {
       BOOST_TEST_CONTEXT(entry.path()) { BOOST_CHECK_NO_THROW(Scenario::load(entry.path())); }
       ++count;
@@ -201,6 +202,68 @@ BOOST_AUTO_TEST_CASE(files_that_are_no_scenario_are_refused) {
   check_error([&] { Scenario::load(broken.path()); }, {"scenario.yaml:", "not YAML"});
   const TemporaryFile empty("scenario.yaml", "");
   check_error([&] { Scenario::load(empty.path()); }, {"scenario.yaml: expected a map of keys"});
+}
+
+BOOST_AUTO_TEST_CASE(mujoco_plants_are_read_and_refused) {
+  const std::string model = source_path("robots/youbot/youbot_rollers.xml").string();
+  const auto with_plant = [&](const std::string& keys) {
+    return good_scenario() + "plant: {type: mujoco, model: " + model + ", " + keys + "}\n";
+  };
+  const TemporaryFile good(
+      "scenario.yaml",
+      with_plant(
+          "sensors: {localisation: odometry, encoder_noise: 1.0e-3, latency: 0.004}, faults: {lost_grip: "
+          "{wheel: back_left, at: 1.0, for: 0.5}, payload: {mass: 0.5, at: 2.0}}"));
+  const Scenario scenario = Scenario::load(good.path());
+  BOOST_TEST(scenario.plant == "mujoco");
+  BOOST_TEST((scenario.mujoco.sensors.localisation == SensorOptions::Localisation::odometry));
+  BOOST_TEST(scenario.mujoco.sensors.encoder_noise == 1e-3);
+  BOOST_TEST(scenario.mujoco.sensors.latency == 4e-3);
+  BOOST_TEST(scenario.mujoco.faults.lost_grip_wheel == 2);
+  BOOST_TEST(scenario.mujoco.faults.lost_grip.contains(1.4));
+  BOOST_TEST(!scenario.mujoco.faults.lost_grip.contains(1.6));
+  BOOST_TEST(scenario.mujoco.faults.payload.contains(1e6));
+  BOOST_TEST(!scenario.mujoco.faults.stall.contains(0.0));
+
+  const auto refused = [&](const std::string& keys, std::initializer_list<std::string> parts) {
+    const TemporaryFile file("scenario.yaml", with_plant(keys));
+    check_error([&] { Scenario::load(file.path()); }, parts);
+  };
+  refused("sensor: {}", {"scenario.yaml:26: plant.sensor: unknown key", "'sensors'?"});
+  refused("sensors: {localisation: gps}", {"plant.sensors.localisation: unknown value 'gps'", "odometry"});
+  refused("sensors: {encoder_noise: -1}", {"plant.sensors.encoder_noise: must not be negative"});
+  refused("faults: {stal: {at: 1}}", {"plant.faults.stal: unknown key", "'stall'?"});
+  refused("faults: {stall: {at: 1, for: 0}}", {"plant.faults.stall.for: must be positive"});
+  refused("faults: {stall: {for: 1}}", {"plant.faults.stall.at: is missing"});
+  refused("faults: {lost_grip: {wheel: left, at: 1}}", {"plant.faults.lost_grip.wheel", "front_left"});
+  refused("faults: {payload: {mass: -1, at: 1}}", {"plant.faults.payload.mass: must be positive"});
+  check_refused("mode: velocity", "mode: velocity\nplant: {type: mujoco, model: none.xml}",
+                {"plant.model: ", "none.xml: no such file"});
+  check_refused("mode: velocity", "mode: velocity\nplant: {type: rigid_body}",
+                {"plant.type: 'rigid_body' does not follow", "'kinematic' or 'mujoco'"});
+}
+
+BOOST_AUTO_TEST_CASE(moving_limits_and_tolerances_are_read) {
+  const TemporaryFile file(
+      "scenario.yaml", replaced(replaced(good_scenario(), "{upper: 0.35, buffer: 0.2}",
+                                         "{upper: 0.35, upper_motion: {velocity: -0.1, at: 2.0, for: 1.5}}"),
+                                "target: {position: [0.5, 0.1, 0.1]}",
+                                "target: {position: [0.5, 0.1, 0.1]}\n    tolerance: 0.005"));
+  const Scenario scenario = Scenario::load(file.path());
+  BOOST_TEST(scenario.tasks[0].tolerance == 1e-3);
+  BOOST_TEST(scenario.tasks[1].tolerance == 5e-3);
+  const MovingLimit& moving = scenario.moving_limits.at(0);
+  BOOST_TEST(moving.joint == 0);
+  BOOST_TEST(moving.moved(2.0) == 0.0);
+  BOOST_TEST(std::abs(moving.moved(2.5) + 0.05) <= 1e-12);
+  BOOST_TEST(std::abs(moving.moved(9.0) + 0.15) <= 1e-12);
+  BOOST_TEST(moving.rate(1.9) == 0.0);
+  BOOST_TEST(moving.rate(2.1) == -0.1);
+  check_refused("{upper: 0.35, buffer", "{upper: 0.35, upper_motion: {at: 1, for: 1}, buffer",
+                {"limits.joints.base_x.upper_motion.velocity: is missing"});
+  check_refused("{upper: 0.35, buffer", "{upper: 0.35, upper_motion: {velocity: -0.5, at: 1, for: 1}, buffer",
+                {"base_x.upper_motion.velocity: must be below half of the speed bound, 0.4", "-0.5"});
+  check_refused("level: 2", "level: 2\n    tolerance: 0", {"tasks.1.tolerance: must be positive"});
 }
 
 BOOST_AUTO_TEST_CASE(overrides_apply) {

@@ -1,4 +1,4 @@
-// Simulation: a short run's log and summary, bit for bit repeatable. Metrics: their figures on made-up
+// Simulation: a short run's log and summary, bit for bit repeatable; sensors; limits that move. Metrics: their figures on made-up
 // cycles. Log: rows in memory and in the file. Not here: whether the controller does well; report and
 // command line.
 #include "support/robots.hpp"
@@ -47,6 +47,50 @@ BOOST_AUTO_TEST_CASE(logs_every_cycle_and_the_end) {
   BOOST_TEST(log.values()[log.columns().size()] == scenario.controller.dt);
   BOOST_TEST(summary.limit_violation.head(2).maxCoeff() <= 0.0);
   BOOST_TEST(std::isnan(summary.limit_violation[2]));  // yaw has no limit
+}
+
+BOOST_AUTO_TEST_CASE(measured_and_true_state_are_told_apart) {
+  const Scenario scenario = Scenario::load(source_path("scenarios/youbot_experiment_velocity.yaml"),
+                                           {{"duration", "0.5"}, {"plant.sensors.localisation", "odometry"}});
+  Simulation simulation(scenario, {.keep_log = true});
+  const Summary summary = simulation.run();
+  const std::vector<std::string>& columns = simulation.log().columns();
+  const auto last = [&](const std::string& name) {
+    const auto place = std::find(columns.begin(), columns.end(), name) - columns.begin();
+    return *(simulation.log().values().end() - static_cast<std::ptrdiff_t>(columns.size()) + place);
+  };
+  const double drift = last("measured.base_y") - last("q.base_y");
+  BOOST_TEST(std::abs(drift) > 1e-3);  // the rollers' loss sideways
+  BOOST_TEST(std::abs(drift) == summary.sensor_error[1]);
+  BOOST_TEST(summary.tasks.at("position").measured_error != summary.tasks.at("position").final_error);
+  const double norm =
+      std::hypot(last("e.position.0"), last("e.position.1"), last("e.position.2"));  // of the true state
+  BOOST_TEST(std::abs(norm - summary.tasks.at("position").final_error) <= 1e-12);
+}
+
+BOOST_AUTO_TEST_CASE(moving_limits_reach_the_controller_and_the_summary) {
+  const Scenario scenario = Scenario::load(
+      source_path("scenarios/youbot_velocity.yaml"),
+      {{"duration", "3.0"},
+       {"limits.joints.base_x", "{upper: 0.35, upper_motion: {velocity: -0.1, at: 1.0, for: 1.5}}"}});
+  Simulation simulation(scenario, {.keep_log = true});
+  const Summary summary = simulation.run();
+  const double end =
+      *(simulation.log().values().end() - static_cast<std::ptrdiff_t>(simulation.log().columns().size()) + 1);
+  BOOST_TEST(end <= 0.2);  // q.base_x
+  BOOST_TEST(end >= 0.19);
+  BOOST_TEST(summary.limit_violation[0] <= 0.0);
+  BOOST_TEST(summary.limit_violation[0] >= -2e-3);
+}
+
+BOOST_AUTO_TEST_CASE(limits_that_meet_stop_the_run) {
+  const Scenario scenario =
+      Scenario::load(source_path("scenarios/youbot_velocity.yaml"),
+                     {{"duration", "1.0"},
+                      {"limits.joints.base_x",
+                       "{lower: 0.1, upper: 0.35, upper_motion: {velocity: -0.3, at: 0.0, for: 1.0}}"}});
+  Simulation simulation(scenario, {});
+  check_error([&] { simulation.run(); }, {"limits of base_x at 0.1", "too near"});
 }
 
 BOOST_AUTO_TEST_CASE(repeats_bit_for_bit) {

@@ -41,6 +41,13 @@ class Controller {
   /// Lets the task fade out. Errors: Error for an unknown handle.
   void remove(TaskHandle handle, const TransitionOptions& options = {});
 
+  /// Moves the limits of a joint from the next update on, towards an obstacle that moves for example; call it before
+  /// every update while they move. Never allocates or throws. False, and nothing changes, for a joint that is none,
+  /// a rate that is not finite, or limits too near each other. A potential field stays where it was built.
+  [[nodiscard]] bool move_limits(int joint, const LimitMotion& motion) noexcept {
+    return limits_.move(joint, motion);
+  }
+
   /// One cycle at state q (nq), v (nv) and time t [s]: writes the command u (nv). Never allocates, throws,
   /// locks, prints or reads a clock. Bad input: u = 0, Event::bad_input, nothing changed inside.
   const Status& update(const VectorArg& q, const VectorArg& v, double t, Eigen::Ref<Vector> u) noexcept;

@@ -6,12 +6,6 @@
 
 namespace tope {
 
-/// How the torques of four wheels share the wrench of the base.
-enum class WheelDistribution {
-  minimum_norm,  ///< least sum of squares, (2) of the paper
-  minimum_peak,  ///< least largest torque: up to half as much again before a wheel meets its bound
-};
-
 /// The bounds of torque mode: of each joint's torque, of each wheel's torque, and of the acceleration that limit rows
 /// leave. Keeps all of them by one scale of the tasks' share.
 class TorqueBounds {

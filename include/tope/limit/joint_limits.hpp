@@ -29,13 +29,22 @@ struct JointLimitOptions {
   double margin = 1e-3;                  ///< m: distance kept from the limit by the unilateral law [rad or m]
 };
 
+/// Where the limits of a joint are at one moment, and how fast they move: a limit may stand for something that does.
+struct LimitMotion {
+  double lower;             ///< [rad or m]
+  double upper;             ///< [rad or m]
+  double lower_rate = 0.0;  ///< [rad/s or m/s]
+  double upper_rate = 0.0;  ///< [rad/s or m/s]
+};
+
 /// The limit rows of a robot's joints: one row a joint, whichever side is near.
 ///
 /// Velocity mode, update().
 /// With the buffer's inner edge q~ = upper - beta (or lower + beta), (20)-(21): activation xi rises from 0 at
 /// q~ to 1 at the limit, (23)-(25), and the row asks for v = gain (q~ - q). As bounds for the unilateral law:
 ///   -min(v_max, gain (q - lower - m)) <= v <= min(v_max, gain (upper - m - q)),
-/// which lead back where a joint is beyond its limit, at no more than half of v_max.
+/// which lead back where a joint is beyond its limit, at no more than half of v_max. A limit that moves adds its
+/// velocity to both.
 ///
 /// Torque mode, update_second_order(). The allowed speed towards the upper limit is the envelope
 ///   V(q) = smooth-min(gain (upper - q), v_max),
@@ -44,6 +53,7 @@ struct JointLimitOptions {
 /// which away from v_max is (19) with lambda_p = gain servo_gain, lambda_v = gain + servo_gain, measured on the
 /// predicted position q + v / gain. As bounds for the unilateral law, with the margin taken off the limit:
 ///   dv/dt <= V' v - servo_gain (v - V),  and the mirror image below.
+/// Towards a limit that moves, its velocity adds to gain (upper - q), and V' acts on the velocity relative to it.
 class JointLimits {
  public:
   static constexpr double default_gain = 10.0;  ///< [1/s]
@@ -51,6 +61,10 @@ class JointLimits {
   /// Errors: ConfigError for an unknown joint in `buffers`, buffers that overlap or a value that is not
   /// positive.
   JointLimits(const Robot& robot, const JointLimitOptions& options);
+
+  /// Moves the limits of a joint from the next update on. Never allocates. False, and nothing changes, for a joint that
+  /// is none, a motion that is not finite where the joint has a limit, or buffers that would overlap.
+  [[nodiscard]] bool move(int joint, const LimitMotion& motion);
 
   /// Evaluates every row at q (nq). Never allocates.
   void update(const VectorArg& q);
@@ -89,20 +103,26 @@ class JointLimits {
   bool limited(int joint) const;
 
  private:
-  /// Allowed speed towards a limit at `distance`, and its slope with respect to the distance.
+  /// Allowed speed towards a limit at `distance` that recedes, and its slope with respect to the distance.
   struct Envelope {
     double speed;
     double slope;
   };
-  Envelope envelope(int joint, double distance) const;
+  Envelope envelope(int joint, double distance, double receding) const;
   /// Acceleration allowed towards a limit at `distance` and approach speed `speed`, `slack` below the envelope.
-  double allowed_acceleration(int joint, double distance, double speed, double slack) const;
+  double allowed_acceleration(int joint, double distance, double receding, double speed, double slack) const;
+  /// How fast the limit on a side moves away from the joint.
+  double upper_receding(int joint) const { return upper_rate_[joint]; }
+  double lower_receding(int joint) const { return -lower_rate_[joint]; }
+  double range_needed(int joint) const;
   void note_distances(int joint, double to_upper, double to_lower);
 
   JointLimitOptions options_;
   double gain_;
   Vector lower_;
   Vector upper_;
+  Vector lower_rate_;
+  Vector upper_rate_;
   Vector velocity_limit_;
   Vector buffer_;
   Vector activation_;

@@ -6,6 +6,12 @@
 
 namespace tope {
 
+/// How the torques of four wheels share the wrench of the base.
+enum class WheelDistribution {
+  minimum_norm,  ///< least sum of squares, (2) of the paper
+  minimum_peak,  ///< least largest torque: up to half as much again before a wheel meets its bound
+};
+
 /// Geometry and drives of a base on four mecanum wheels.
 struct MecanumBaseOptions {
   std::array<int, 3> joints{0, 1, 2};  ///< indices of the joints x [m], y [m] and yaw [rad]
@@ -33,11 +39,19 @@ class MecanumBase {
   /// Wheel speeds [rad/s] for the joint velocities `v` (nv) of the whole robot at yaw angle `yaw` [rad].
   Wheels wheel_speeds(const Eigen::Ref<const Eigen::VectorXd>& v, double yaw) const;
 
+  /// Motion along the base's axes (v_x, v_y [m/s], yaw rate [rad/s]) that fits the wheel speeds [rad/s] best: what
+  /// odometry adds up.
+  Eigen::Vector3d twist(const Wheels& speeds) const;
+  /// (x, y) turned from the base's axes to the world's at yaw angle `yaw` [rad]; the turn stays.
+  static Eigen::Vector3d to_world(const Eigen::Vector3d& motion, double yaw);
+
   /// Wheel torques [Nm] of least norm that give a base wrench (f_x, f_y [N], moment [Nm]) along the base's axes.
   Wheels minimum_norm_torques(const Eigen::Vector3d& wrench) const;
   /// Wheel torques of least peak for it: the least-norm ones, shifted along (1, 1, -1, -1), which moves nothing, until
   /// the largest torque either way is the same.
   Wheels minimum_peak_torques(const Eigen::Vector3d& wrench) const;
+  /// One of the two.
+  Wheels wheel_torques(const Eigen::Vector3d& wrench, WheelDistribution distribution) const;
   /// What a wheel torque of each drive gives at the base; inverse of both maps above.
   Eigen::Vector3d wrench(const Wheels& torques) const { return wheel_map_.transpose() * torques; }
   /// Base wrench along the base's axes of the joint forces `u` (nv) at yaw angle `yaw` [rad].

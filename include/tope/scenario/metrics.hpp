@@ -15,16 +15,21 @@ namespace tope {
 struct TaskResult {
   double final_error = 0.0;            ///< norm [m or rad]
   std::optional<double> at_goal_time;  ///< norm at the time its reference promises
+  double measured_error = 0.0;         ///< final norm as the robot's sensors have it
+  double acceleration = 0.0;           ///< root mean square over the last half of the run [m/s2 or rad/s2]
 };
 
 /// Figures of a whole run, in the units of each joint.
 struct Summary {
   Vector limit_violation;  ///< largest distance beyond a limit (n); negative: distance kept; NaN: no limit
   Vector command_jump;     ///< largest change of u between cycles after the first, over the joint's bound (n)
-  Vector command_variation;  ///< total variation of u over the last half of the run (n)
-  Vector buffer_time;        ///< seconds spent inside a buffer (n)
+  Vector command_variation;   ///< total variation of u over the last half of the run (n)
+  Vector velocity_variation;  ///< total variation of v over the last half of the run (n)
+  Vector buffer_time;         ///< seconds spent inside a buffer (n)
+  Vector sensor_error;        ///< how far the sensors are from the truth at the end (n)
   std::map<std::string, TaskResult> tasks;
-  std::optional<double> time_to_goal;  ///< from here on every goal's error stays below 1 mm and 1 mrad [s]
+  std::map<std::string, double> contacts;  ///< Plant::contacts()
+  std::optional<double> time_to_goal;      ///< from here on every goal's error stays below its tolerance [s]
   std::map<std::string, int> status_counts;
   std::array<double, 4> cycle_time_us{};  ///< p50, p99, p99.9, max of Controller::update
   int cycles = 0;
@@ -37,12 +42,15 @@ class Metrics {
     std::string name;
     bool goal = true;                   ///< counts for time_to_goal
     std::optional<double> goal_time{};  ///< [s]
+    double tolerance = 1e-3;            ///< [m or rad]
   };
 
   Metrics(Vector lower, Vector upper, Vector buffer, Vector bound, std::vector<TaskInfo> tasks, int cycles,
           double dt);
 
-  /// One cycle at time t: state q, command u, the norm of each task's error, status and the update's time.
+  /// Limits (n) of the states to come, where they move.
+  void move_limits(const Vector& lower, const Vector& upper);
+  /// One cycle at time t: true state q, command u, the norm of each task's error, status and the update's time.
   void observe(double t, const Vector& q, const Vector& u, const std::vector<double>& errors,
                const Status& status, double cycle_time_us);
   /// The state and errors after the last command.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tope/controller/controller.hpp>
+#include <tope/plant/mujoco.hpp>
 #include <tope/plant/rigid_body.hpp>
 #include <tope/robot/robot.hpp>
 #include <tope/task/task.hpp>
@@ -18,6 +19,20 @@ struct ScenarioTask {
   std::string name;
   int level = 1;
   std::shared_ptr<const Task> task;
+  double tolerance = 1e-3;  ///< norm of the error below which its goal counts as reached [m or rad]
+};
+
+/// An upper limit that moves with constant velocity for a while.
+struct MovingLimit {
+  int joint = 0;
+  double velocity = 0.0;  ///< [rad/s or m/s]
+  double start = 0.0;     ///< [s]
+  double duration = 0.0;  ///< [s]
+
+  /// How far it has moved at time t [s].
+  double moved(double t) const;
+  /// Its velocity at time t [s].
+  double rate(double t) const;
 };
 
 /// A complete experiment as a YAML file tells it.
@@ -27,9 +42,12 @@ struct Scenario {
   std::filesystem::path file;
   std::shared_ptr<const Robot> robot;
   ControllerOptions controller;
-  std::string plant;  ///< "kinematic" or "rigid_body"
+  std::vector<MovingLimit> moving_limits;
+  std::string plant;  ///< "kinematic", "rigid_body" or "mujoco"
   RigidBodyOptions rigid_body;
-  Vector initial;         ///< q at t = 0 (nq)
+  MujocoOptions
+      mujoco;      ///< what the plant's own keys say; drive and wheels follow from the controller's mode
+  Vector initial;  ///< q at t = 0 (nq)
   double duration = 0.0;  ///< [s]
   int log_every = 1;      ///< cycles between rows of the log
   std::vector<ScenarioTask> tasks;

@@ -4,6 +4,7 @@
 #include <tope/scenario/log.hpp>
 #include <tope/scenario/metrics.hpp>
 #include <tope/scenario/scenario.hpp>
+#include <tope/scenario/smoothness.hpp>
 
 #include <filesystem>
 #include <functional>
@@ -31,8 +32,10 @@ class Simulation {
 
  private:
   MecanumBase::Wheels wheel_commands(const MecanumBase& base, const Vector& u) const;
+  void move_limits(double t, Metrics& metrics);
   void write_row(double t, const Vector& u);
-  void evaluate_errors();
+  void evaluate_errors(double t);
+  Summary complete(Summary summary, const Smoothness& smoothness) const;
 
   Scenario scenario_;
   SimulationOptions options_;
@@ -41,7 +44,10 @@ class Simulation {
   std::unique_ptr<Plant> plant_;
   Log log_;
   std::vector<double> row_;
-  std::vector<double> errors_;
+  RobotTerms true_terms_;  // at the true state, which the controller may not see
+  std::vector<std::unique_ptr<Task>> true_tasks_;
+  std::vector<Vector> errors_;  // of each task at the true state
+  std::vector<double> norms_;
 };
 
 }  // namespace tope
