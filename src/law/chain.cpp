@@ -9,6 +9,7 @@ Chain::Chain(const Stack& stack) : selection_(stack), part_(stack.size()) {
 }
 
 void Chain::solve(const Stack& stack, const Vector& limit_activation, StackLaw& law, Solution& solution) {
+  law.begin();
   elements_.clear();
   const auto classify = [this](double activation, char& selected) {
     selected = activation >= 1.0 ? 1 : 0;

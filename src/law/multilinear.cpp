@@ -14,6 +14,7 @@ Multilinear::Multilinear(const Stack& stack) : selection_(stack), part_(stack.si
 
 void Multilinear::solve(const Stack& stack, const Vector& limit_activation, StackLaw& law,
                         Solution& solution) {
+  law.begin();
   std::array<Transition, max_transitions> transitions{};
   std::size_t count = 0;
   const auto classify = [&](double activation, char& selected) {

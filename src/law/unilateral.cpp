@@ -20,18 +20,14 @@ Unilateral::Unilateral(const Stack& stack, const Options& options)
       rows_(stack.size(), workspace_rows(stack)),
       solver_(stack.size(), stack.size()),
       eigen_(workspace_rows(stack)),
-      open_(stack.size(), stack.size()),
-      next_open_(stack.size(), stack.size()),
+      open_(stack.size(), workspace_rows(stack)),
       motion_(stack.size(), stack.size()),
       next_motion_(stack.size(), stack.size()),
       task_(workspace_rows(stack), stack.size()),
       task_gram_(workspace_rows(stack), workspace_rows(stack)),
       factor_(workspace_rows(stack), workspace_rows(stack)),
-      turned_task_(std::max(workspace_rows(stack), stack.size()),
-                   std::max(workspace_rows(stack), stack.size())),
-      open_task_(stack.size(), workspace_rows(stack)),
-      turn_(stack.size(), stack.size()),
-      reflector_scale_(stack.size()),
+      turned_task_(workspace_rows(stack), stack.size()),
+      share_(workspace_rows(stack)),
       residual_(workspace_rows(stack)),
       motion_at_y_(stack.size()),
       lower_(stack.size()),
@@ -55,9 +51,7 @@ void Unilateral::solve(const Stack& stack, const Selection& selection, Solution&
   solution.set_zero();
   solution.laws = 1;
   solve_limits(stack, solution);
-  open_count_ = stack.size();
-  whole_ = true;
-  open_.setIdentity();
+  open_.reset();
   motion_ = stack.motion;
   std::size_t position = 1;
   for (std::size_t i = 0; i < stack.tasks.size(); ++position) {
@@ -101,19 +95,15 @@ void Unilateral::solve_limits(const Stack& stack, Solution& solution) {
 /// What the gathered rows want beyond y, in the directions that are open.
 void Unilateral::solve_level(std::size_t position, Solution& solution) {
   const int m = rows_.rows();
-  auto task = task_.topLeftCorner(m, open_count_);
+  auto task = task_.topLeftCorner(m, open_.size());
   auto residual = residual_.head(m);
-  if (whole_) {
-    task = rows_.a();
-  } else {
-    multiply(rows_.a(), open(), task);
-  }
+  open_.project(rows_.a(), task);
   residual = rows_.b();
   residual -= rows_.a().lazyProduct(solution.y);
   const bool solved = solver_.solve(task, residual, squared_damping(residual.squaredNorm()),
-                                    motion_.leftCols(open_count_), lower_, upper_, active_[position]);
+                                    motion_.leftCols(open_.size()), lower_, upper_, active_[position]);
   solution.cut_off = solution.cut_off || !solved;
-  solution.y += open().lazyProduct(solver_.z());
+  solution.y += open_.columns().lazyProduct(solver_.z());
   motion_at_y_ += solver_.row_values();
 }
 
@@ -134,77 +124,38 @@ void Unilateral::set_bounds(const Stack& stack, int level) {
 /// Computes A M M^T A^T; true when every sigma exceeds the lock.
 bool Unilateral::all_directions_clear() {
   const int m = rows_.rows();
-  const auto task = task_.topLeftCorner(m, open_count_);
+  const auto task = task_.topLeftCorner(m, open_.size());
   auto gram = task_gram_.topLeftCorner(m, m);
   auto factor = factor_.topLeftCorner(m, m);
   multiply(task, task.transpose(), gram);
   factor = gram;
   factor.diagonal().array() -= options_.lock * options_.lock;
-  return m <= open_count_ && factorise_in_place(factor);
+  return m <= open_.size() && factorise_in_place(factor);
 }
 
-/// Takes all directions of the level out of M: an orthonormal basis of what is left, by Householder reflections.
+/// Takes all directions of the level out of M.
 void Unilateral::lock_fully() {
-  const int m = rows_.rows();
-  auto columns = turned_task_.topLeftCorner(open_count_, m);
-  columns = task_.topLeftCorner(m, open_count_).transpose();
-  for (int k = 0; k < m; ++k) {
-    auto pivot = columns.col(k).tail(open_count_ - k);
-    const double length = pivot.norm();
-    pivot[0] += std::copysign(length, pivot[0]);
-    reflector_scale_[k] = 2.0 / pivot.squaredNorm();
-    for (int j = k + 1; j < m; ++j) {
-      auto column = columns.col(j).tail(open_count_ - k);
-      column -= (reflector_scale_[k] * pivot.dot(column)) * pivot;
-    }
-  }
-  turn_open_basis(m);
-}
-
-/// M <- M Q_2, T M <- T M Q_2 with the columns Q_2 of the reflections' product that the level's rows do not reach.
-void Unilateral::turn_open_basis(int rank) {
-  const int left = open_count_ - rank;
-  auto turn = turn_.topLeftCorner(open_count_, left);
-  turn.setZero();
-  turn.bottomRows(left).setIdentity();
-  for (int k = rank - 1; k >= 0; --k) {
-    const auto reflector = turned_task_.col(k).segment(k, open_count_ - k);
-    for (int j = 0; j < left; ++j) {
-      auto column = turn.col(j).tail(open_count_ - k);
-      column -= (reflector_scale_[k] * reflector.dot(column)) * reflector;
-    }
-  }
-  auto next_motion = next_motion_.leftCols(left);
-  if (whole_) {
-    next_open_.leftCols(left) = turn;
-  } else {
-    multiply(open(), turn, next_open_.leftCols(left));
-  }
-  multiply(motion_.leftCols(open_count_), turn, next_motion);
-  open_.swap(next_open_);
+  const int before = open_.size();
+  open_.close(task_.topLeftCorner(rows_.rows(), before));
+  multiply(motion_.leftCols(before), open_.turn(), next_motion_.leftCols(open_.size()));
   motion_.swap(next_motion_);
-  open_count_ = left;
-  whole_ = false;
 }
 
 /// Takes each direction out of M as far as its sigma says.
 void Unilateral::lock_gradually(const Stack& stack) {
   const int m = rows_.rows();
-  auto task = task_.topLeftCorner(m, open_count_);
-  auto turned = turned_task_.topLeftCorner(m, open_count_);
-  auto open_task = open_task_.leftCols(m);
+  auto turned = turned_task_.topLeftCorner(m, open_.size());
+  auto share = share_.head(m);
   const SymmetricEigen::Solver& eigen = eigen_.compute(task_gram_.topLeftCorner(m, m));
-  multiply(eigen.eigenvectors().transpose(), task, turned);  // rows sigma v^T
-  multiply(open(), turned.transpose(), open_task);
+  multiply(eigen.eigenvectors().transpose(), task_.topLeftCorner(m, open_.size()), turned);  // rows sigma v^T
   for (Eigen::Index i = 0; i < m; ++i) {
     // s(x) / sigma^2 with x = sigma / lock, written so that it stays finite at sigma = 0
     const double x = std::sqrt(std::max(0.0, eigen.eigenvalues()[i])) / options_.lock;
     const double quotient = x < 1.0 ? x * (10.0 + x * (6.0 * x - 15.0)) : 1.0 / (x * x);
-    open_task.col(i) *= quotient / (options_.lock * options_.lock);
+    share[i] = quotient / (options_.lock * options_.lock);
   }
-  open_.leftCols(open_count_) -= open_task.lazyProduct(turned);
-  multiply(stack.motion, open(), motion_.leftCols(open_count_));
-  whole_ = false;
+  open_.fade(turned, share);
+  multiply(stack.motion, open_.columns(), motion_.leftCols(open_.size()));
 }
 
 }  // namespace tope

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <tope/law/level_rows.hpp>
+#include <tope/law/open_basis.hpp>
 #include <tope/law/stack_law.hpp>
 #include <tope/law/symmetric_eigen.hpp>
+
+#include <vector>
 
 namespace tope {
 
@@ -14,7 +17,8 @@ namespace tope {
 ///   N <- N - sum s(rho) / rho (N A^T L^-T v)(...)^T,    s a smooth step from 0 to 1 on [0, rho_lock]
 /// rho in [0, 1) says how much of a task direction is left, whether the arm or a higher level took it. Where
 /// every rho >= rho_0 this is the undamped law; where rows conflict or are deficient it is least squares in
-/// the metric B^-1.
+/// the metric B^-1. N is kept as Z Z^T: a level has as many unknowns as directions are open, and its spectrum is taken
+/// from the smaller of G and Z^T A^T L^-T L^-1 A Z. What does not depend on the selection is worked out once a cycle.
 class Hierarchy final : public StackLaw {
  public:
   struct Options {
@@ -26,25 +30,44 @@ class Hierarchy final : public StackLaw {
   /// Errors: ConfigError unless 0 < locked_above < damped_below < 1 and epsilon > 0.
   Hierarchy(const Stack& stack, const Options& options);
 
+  void begin() override;
   void solve(const Stack& stack, const Selection& selection, Solution& solution) override;
   /// The same with other targets (n) for the limit rows than the stack's.
   void solve(const Stack& stack, const Selection& selection, const Vector& limit_target, Solution& solution);
 
  private:
+  /// One level's rows in the metric B^-1.
+  struct Level {
+    std::size_t first;  // task
+    std::size_t last;   // one past its last task
+    Matrix rows;        // P = L^-1 A (m x n)
+    Vector target;      // L^-1 b (m)
+    bool ready;
+  };
+
   void add_limits(const Stack& stack, const Selection& selection, const Vector& limit_target, Vector& y);
-  void add_level(bool last, Solution& solution);
-  void add_damped_level(bool last, Solution& solution);
+  void whiten(const Stack& stack, const Selection& selection, std::size_t first, Matrix& rows,
+              Vector& target);
+  void add_level(const Eigen::Ref<const Matrix>& rows, const VectorArg& target, bool last,
+                 Solution& solution);
+  void add_wide_level(int m, bool last, Solution& solution);
+  void add_tall_level(int m, bool last, Solution& solution);
+  double damped(double rho) const;
 
   Options options_;
-  LevelRows rows_;
+  LevelRows gathered_;
+  std::vector<Level> levels_;
+  Level partial_;  // a level of which some tasks are not selected
   SymmetricEigen eigen_;
-  Matrix null_space_;  // N (n x n)
-  Matrix whitened_;    // P = L^-1 A (m x n), then rows of what N loses
-  Matrix projected_;   // P N (m x n)
-  Matrix gram_;        // B, then G (m x m)
-  Matrix factor_;      // G - rho_0 I, then G's factor (m x m)
-  Vector residual_;    // r (m)
-  Vector weights_;     // (m)
+  OpenBasis open_;   // Z (n x d)
+  Matrix task_;      // P Z (m x d)
+  Matrix gram_;      // B, then G or its small twin
+  Matrix factor_;    // G - rho_0 I, then G's factor
+  Matrix turned_;    // rows of P Z along its singular vectors
+  Vector residual_;  // r (m)
+  Vector weights_;   // (m or d)
+  Vector step_;      // (d)
+  Vector share_;
 };
 
 }  // namespace tope

@@ -19,6 +19,7 @@ class IntermediateValues final : public StackLaw {
 
   IntermediateValues(const Stack& stack, const Hierarchy::Options& options, Scope scope);
 
+  void begin() override { hierarchy_.begin(); }
   /// Takes the limit rows from the stack's activations; selection.limits has no part in this law.
   void solve(const Stack& stack, const Selection& selection, Solution& solution) override;
 

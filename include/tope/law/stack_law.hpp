@@ -9,6 +9,8 @@ namespace tope {
 class StackLaw {
  public:
   virtual ~StackLaw() = default;
+  /// Starts a cycle: the stack has changed. What the selections have in common may be kept from here on.
+  virtual void begin() {}
   virtual void solve(const Stack& stack, const Selection& selection, Solution& solution) = 0;
 };
 

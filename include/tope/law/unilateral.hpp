@@ -2,6 +2,7 @@
 
 #include <tope/law/bounded_least_squares.hpp>
 #include <tope/law/level_rows.hpp>
+#include <tope/law/open_basis.hpp>
 #include <tope/law/stack_law.hpp>
 #include <tope/law/symmetric_eigen.hpp>
 
@@ -41,9 +42,6 @@ class Unilateral final : public StackLaw {
   void solve(const Stack& stack, const Selection& selection, Solution& solution) override;
 
  private:
-  /// Columns span the directions still open: M up to an orthonormal change of z.
-  auto open() const { return open_.leftCols(open_count_); }
-
   void solve_limits(const Stack& stack, Solution& solution);
   void solve_level(std::size_t position, Solution& solution);
   double squared_damping(double squared_residual) const;
@@ -51,25 +49,19 @@ class Unilateral final : public StackLaw {
   bool all_directions_clear();
   void lock_fully();
   void lock_gradually(const Stack& stack);
-  void turn_open_basis(int rank);
 
   Options options_;
   LevelRows rows_;
   BoundedLeastSquares solver_;
   SymmetricEigen eigen_;
-  int open_count_ = 0;  // d
-  bool whole_ = true;   // M is the identity
-  Matrix open_;         // M (n x d)
-  Matrix next_open_;
-  Matrix motion_;  // T M (n x d)
+  OpenBasis open_;  // M up to an orthonormal change of z (n x d)
+  Matrix motion_;   // T M (n x d)
   Matrix next_motion_;
   Matrix task_;         // A M (m x d)
   Matrix task_gram_;    // A M M^T A^T (m x m)
   Matrix factor_;       // (m x m)
-  Matrix turned_task_;  // rows of A M along its singular vectors (m x d), or its Householder vectors (d x m)
-  Matrix open_task_;    // M M^T A^T, column-weighted (n x m)
-  Matrix turn_;         // orthonormal basis of what A M leaves (d x (d - m))
-  Vector reflector_scale_;
+  Matrix turned_task_;  // rows of A M along its singular vectors (m x d)
+  Vector share_;        // (m)
   Vector residual_;     // (m)
   Vector motion_at_y_;  // T y (n)
   Vector lower_;
