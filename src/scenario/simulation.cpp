@@ -1,4 +1,3 @@
-#include <tope/plant/kinematic.hpp>
 #include <tope/scenario/simulation.hpp>
 
 #include <chrono>
@@ -36,13 +35,6 @@ std::vector<std::string> log_columns(const Scenario& scenario) {
   return columns;
 }
 
-std::unique_ptr<Plant> make_plant(const Scenario& scenario) {
-  if (scenario.plant == "rigid_body") {
-    return std::make_unique<RigidBody>(*scenario.robot, scenario.rigid_body, scenario.controller.dt);
-  }
-  return std::make_unique<Kinematic>(*scenario.robot);
-}
-
 std::vector<Metrics::TaskInfo> task_infos(const Scenario& scenario) {
   std::vector<Metrics::TaskInfo> infos;
   infos.reserve(scenario.tasks.size());
@@ -67,84 +59,64 @@ double elapsed_us(std::chrono::steady_clock::time_point begin) {
 }  // namespace
 
 Simulation::Simulation(const Scenario& scenario, const SimulationOptions& options)
-    : scenario_(scenario),
-      options_(options),
-      controller_(*scenario.robot, scenario.controller),
-      plant_(make_plant(scenario)),
-      log_(log_columns(scenario), options.log_file, options.keep_log) {
-  for (const ScenarioTask& task : scenario_.tasks) {
-    handles_.push_back(controller_.add(task.level, *task.task));
-  }
+    : options_(options), loop_(scenario), log_(log_columns(scenario), options.log_file, options.keep_log) {
   row_.reserve(log_.columns().size());
-  errors_.resize(scenario_.tasks.size());
+  errors_.resize(scenario.tasks.size());
 }
 
 Summary Simulation::run() {
-  const double dt = scenario_.controller.dt;
-  const auto cycles = static_cast<int>(std::lround(scenario_.duration / dt));
+  const Scenario& scenario = loop_.scenario();
+  const double dt = scenario.controller.dt;
+  const auto cycles = static_cast<int>(std::lround(scenario.duration / dt));
   const int progress_every = std::max(1, cycles / kProgressSteps);
-  const JointLimits& limits = controller_.limits();
-  Metrics metrics(limits.lower(), limits.upper(), buffers(limits), scenario_.command_bound(),
-                  task_infos(scenario_), cycles, dt);
-  plant_->reset(scenario_.initial);
-  Vector u = Vector::Zero(scenario_.robot->nv());
+  const JointLimits& limits = loop_.controller().limits();
+  Metrics metrics(limits.lower(), limits.upper(), buffers(limits), scenario.command_bound(),
+                  task_infos(scenario), cycles, dt);
+  cycle_times_.reserve(static_cast<std::size_t>(cycles));
   for (int cycle = 0; cycle < cycles; ++cycle) {
-    const double t = cycle * dt;
     const auto begin = std::chrono::steady_clock::now();
-    controller_.update(plant_->position(), plant_->velocity(), t, u);
-    const double cycle_time = elapsed_us(begin);
+    const Status& status = loop_.control();
+    cycle_times_.push_back(elapsed_us(begin));
     evaluate_errors();
-    metrics.observe(t, plant_->position(), u, errors_, controller_.status(), cycle_time);
-    if (cycle % scenario_.log_every == 0) {
-      write_row(t, u);
+    metrics.observe(loop_.time(), loop_.position(), loop_.command(), errors_, status, cycle_times_.back());
+    if (cycle % scenario.log_every == 0) {
+      write_row();
     }
-    plant_->step(u, dt);
+    loop_.move();
     if (options_.on_progress && cycle % progress_every == 0) {
       options_.on_progress(static_cast<double>(cycle) / cycles);
     }
   }
-  // the state that the last command led to
-  controller_.update(plant_->position(), plant_->velocity(), cycles * dt, u);
+  loop_.control();  // at the state that the last command led to
   evaluate_errors();
-  metrics.observe_end(cycles * dt, plant_->position(), errors_);
-  write_row(cycles * dt, u);
+  metrics.observe_end(loop_.time(), loop_.position(), errors_);
+  write_row();
   return metrics.summary();
 }
 
 void Simulation::evaluate_errors() {
-  for (std::size_t i = 0; i < handles_.size(); ++i) {
-    errors_[i] = controller_.task(handles_[i]).error().norm();
+  for (std::size_t i = 0; i < errors_.size(); ++i) {
+    errors_[i] = loop_.task(i)->error().norm();
   }
 }
 
-/// Speeds [rad/s] or torques [Nm] of the wheels under the command u.
-MecanumBase::Wheels Simulation::wheel_commands(const MecanumBase& base, const Vector& u) const {
-  const double yaw = plant_->position()[base.options().joints[2]];
-  if (scenario_.controller.mode == Mode::velocity) {
-    return base.wheel_speeds(u, yaw);
-  }
-  const Eigen::Vector3d wrench = base.base_wrench(u, yaw);
-  return scenario_.controller.wheel_distribution == WheelDistribution::minimum_peak
-             ? base.minimum_peak_torques(wrench)
-             : base.minimum_norm_torques(wrench);
-}
-
-void Simulation::write_row(double t, const Vector& u) {
+void Simulation::write_row() {
   const auto append = [this](const auto& values) { row_.insert(row_.end(), values.begin(), values.end()); };
-  row_.assign(1, t);
-  append(plant_->position());
-  append(plant_->velocity());
-  append(u);
-  append(controller_.upper_activation());
-  append(controller_.lower_activation());
-  for (const TaskHandle handle : handles_) {
-    append(controller_.task(handle).error());
+  const Controller& controller = loop_.controller();
+  row_.assign(1, loop_.time());
+  append(loop_.position());
+  append(loop_.velocity());
+  append(loop_.command());
+  append(controller.upper_activation());
+  append(controller.lower_activation());
+  for (std::size_t i = 0; i < errors_.size(); ++i) {
+    append(loop_.task(i)->error());
   }
-  row_.push_back(controller_.status().scale);
-  if (const auto& base = scenario_.robot->base()) {
-    append(wheel_commands(*base, u));
+  row_.push_back(controller.status().scale);
+  if (const auto wheels = loop_.wheels()) {
+    append(*wheels);
   }
-  log_.write(row_, event_names(controller_.status()));
+  log_.write(row_, event_names(controller.status()));
 }
 
 }  // namespace tope

@@ -1,13 +1,12 @@
 #pragma once
 
-#include <tope/plant/plant.hpp>
+#include <tope/scenario/closed_loop.hpp>
 #include <tope/scenario/log.hpp>
 #include <tope/scenario/metrics.hpp>
 #include <tope/scenario/scenario.hpp>
 
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <vector>
 
 namespace tope {
@@ -28,20 +27,19 @@ class Simulation {
   Summary run();
 
   const Log& log() const { return log_; }
+  /// Computing time of each cycle's Controller::update [us]. Not in the log, which is the same in every run.
+  const std::vector<double>& cycle_times() const { return cycle_times_; }
 
  private:
-  MecanumBase::Wheels wheel_commands(const MecanumBase& base, const Vector& u) const;
-  void write_row(double t, const Vector& u);
+  void write_row();
   void evaluate_errors();
 
-  Scenario scenario_;
   SimulationOptions options_;
-  Controller controller_;
-  std::vector<TaskHandle> handles_;
-  std::unique_ptr<Plant> plant_;
+  ClosedLoop loop_;
   Log log_;
   std::vector<double> row_;
   std::vector<double> errors_;
+  std::vector<double> cycle_times_;
 };
 
 }  // namespace tope

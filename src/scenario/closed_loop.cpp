@@ -1,0 +1,85 @@
+#include <tope/plant/kinematic.hpp>
+#include <tope/scenario/closed_loop.hpp>
+
+#include <utility>
+
+namespace tope {
+namespace {
+
+std::unique_ptr<Plant> make_plant(const Scenario& scenario) {
+  if (scenario.plant == "rigid_body") {
+    return std::make_unique<RigidBody>(*scenario.robot, scenario.rigid_body, scenario.controller.dt);
+  }
+  return std::make_unique<Kinematic>(*scenario.robot);
+}
+
+}  // namespace
+
+ClosedLoop::ClosedLoop(Scenario scenario)
+    : scenario_(std::move(scenario)),
+      controller_(std::make_unique<Controller>(*scenario_.robot, scenario_.controller)),
+      plant_(make_plant(scenario_)),
+      command_(Vector::Zero(scenario_.robot->nv())) {
+  for (const ScenarioTask& task : scenario_.tasks) {
+    handles_.emplace_back(controller_->add(task.level, *task.task));
+  }
+  plant_->reset(scenario_.initial);
+}
+
+const Status& ClosedLoop::control() {
+  return controller_->update(plant_->position(), plant_->velocity(), time(), command_);
+}
+
+void ClosedLoop::move() {
+  plant_->step(command_, scenario_.controller.dt);
+  ++cycle_;
+}
+
+void ClosedLoop::adopt(Scenario scenario) {
+  auto controller = std::make_unique<Controller>(*scenario.robot, scenario.controller);
+  std::vector<std::optional<TaskHandle>> handles(handles_.size());
+  for (std::size_t i = 0; i < handles.size(); ++i) {
+    if (handles_[i]) {
+      handles[i] = controller->add(scenario.tasks[i].level, *scenario.tasks[i].task);
+    }
+  }
+  handles_ = std::move(handles);
+  scenario_ = std::move(scenario);
+  controller_ = std::move(controller);
+  control();  // so that tasks, activations and status are those of the new controller
+}
+
+void ClosedLoop::insert(std::size_t task, double over) {
+  if (!handles_[task]) {
+    const ScenarioTask& added = scenario_.tasks[task];
+    handles_[task] = controller_->add(added.level, *added.task, {.over = over});
+  }
+}
+
+void ClosedLoop::remove(std::size_t task, double over) {
+  if (handles_[task]) {
+    controller_->remove(*handles_[task], {.over = over});
+    handles_[task].reset();
+  }
+}
+
+const Task* ClosedLoop::task(std::size_t task) const {
+  return handles_[task] ? &controller_->task(*handles_[task]) : nullptr;
+}
+
+std::optional<MecanumBase::Wheels> ClosedLoop::wheels() const {
+  const auto& base = scenario_.robot->base();
+  if (!base) {
+    return std::nullopt;
+  }
+  const double yaw = plant_->position()[base->options().joints[2]];
+  if (scenario_.controller.mode == Mode::velocity) {
+    return base->wheel_speeds(command_, yaw);
+  }
+  const Eigen::Vector3d wrench = base->base_wrench(command_, yaw);
+  return scenario_.controller.wheel_distribution == WheelDistribution::minimum_peak
+             ? base->minimum_peak_torques(wrench)
+             : base->minimum_norm_torques(wrench);
+}
+
+}  // namespace tope
