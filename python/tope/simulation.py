@@ -36,7 +36,7 @@ def simulate(
     loaded = _core.load_scenario(os.fspath(scenario), as_text(overrides or {}))
     folder = None if out is None else fresh_folder(out)
     result = _core.simulate(loaded, None if folder is None else str(folder), progress, True)
-    run = Run(finite(result["summary"]), log_of(result), folder)
+    run = Run(finite(result["summary"]), log_of(result), folder, np.array(result["cycle_time_us"]))
     if folder is not None:
         if report:
             write_run_report(run, folder / "report.html")

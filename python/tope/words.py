@@ -24,9 +24,11 @@ COMPARISON_NOTE = (
 
 
 def number(value: float | None, unit: str = "") -> str:
-    """The value to three digits with its unit, or a dash if there is none."""
+    """The value to three digits with its unit, or a dash if there is none; small lengths and angles in thousandths."""
     if value is None:
         return "–"
+    if unit in ("m", "rad") and 0 < abs(value) < 0.01:
+        value, unit = 1e3 * value, f"m{unit}"
     digits = f"{value:.0f}" if 1e3 <= abs(value) < 1e6 else f"{value:.3g}"
     return f"{digits} {unit}".rstrip()
 
@@ -50,6 +52,49 @@ def summary_rows(summary: Summary) -> list[tuple[str, str]]:
         ("Cycles", cycles(summary)),
         ("Time per cycle", cycle_time(summary)),
     ]
+
+
+def tiles(summary: Summary) -> list[tuple[str, str, str]]:
+    """The outcome at a glance: (what, figure, what it says)."""
+    reached = summary["time_to_goal"]
+    joint, violation = worst(summary["max_limit_violation"])
+    jumping, fraction = worst(summary["max_command_jump"])
+    units = {each["name"]: each["unit"] for each in summary["scenario"]["joints"]}
+    crossed = violation is not None and violation > 0
+    distance = None if violation is None else abs(violation)
+    return [
+        (
+            "Goal",
+            "not reached" if reached is None else f"reached in {number(reached, 's')}",
+            goal_accuracy(summary),
+        ),
+        (
+            "Limits",
+            "none" if distance is None else ("crossed" if crossed else "kept"),
+            "no joint has one"
+            if distance is None
+            else f"{'by ' if crossed else ''}{number(distance, units[joint])}{'' if crossed else ' away'}, {joint}",
+        ),
+        (
+            "Largest jump of a command",
+            percent(fraction),
+            f"of its bound in one cycle, {jumping}" if jumping else "no cycle",
+        ),
+        (
+            "Computing time",
+            number(summary["cycle_time_us"]["p50"], "µs"),
+            f"a cycle; slowest {number(summary['cycle_time_us']['max'], 'µs')}",
+        ),
+    ]
+
+
+def goal_accuracy(summary: Summary) -> str:
+    """The final errors of all tasks."""
+    return ", ".join(
+        f"{task['name']} {number(summary['task_error'][task['name']]['final'], unit(task))}"
+        for task in by_level(summary["scenario"]["tasks"])
+        if task["name"] in summary["task_error"]
+    )
 
 
 def comparison_row(name: str, summary: Summary) -> tuple[str, ...]:
