@@ -341,7 +341,7 @@ def cycle_times(view: View) -> Section:
 
 def times_of(run: Run, cycles: Array) -> Array:
     """The time of each cycle [s]."""
-    return np.arange(len(cycles)) * float(run.scenario["dt"])
+    return np.asarray(np.arange(len(cycles)) * float(run.scenario["dt"]), dtype=float)
 
 
 def figure_4(view: View) -> Section:

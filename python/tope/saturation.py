@@ -51,7 +51,8 @@ def slowed(run: Run) -> Iterator[str]:
     below = scale < 1
     if np.any(below):
         who = ", ".join(joints_at_bound(run, below)) or "the wheels"
-        yield f"The tasks were slowed by the bound of {who} {told(run.time, below)}, to {percent(float(scale.min()))}"
+        least = percent(float(scale.min()))
+        yield f"The tasks were slowed by the bound of {who} {told(run.time, below)}, to {least}"
 
 
 def joints_at_bound(run: Run, cycles: Mask) -> Iterator[str]:

@@ -206,7 +206,7 @@ def rotations(vectors: Array) -> Array:
 
 
 def quaternions(matrices: Array) -> Array:
-    """Unit quaternions x, y, z, w (rows, 4) of rotation matrices (rows, 3, 3); neighbours on the same side."""
+    """Unit quaternions x, y, z, w (rows, 4) of rotation matrices (rows, 3, 3); their signs do not jump."""
     m = matrices
     trace = m[:, 0, 0] + m[:, 1, 1] + m[:, 2, 2]
     # four times the squares, and the products, of the components: the row of the largest one is accurate
@@ -224,4 +224,4 @@ def quaternions(matrices: Array) -> Array:
     q = q / np.linalg.norm(q, axis=1, keepdims=True)
     flips = np.cumprod(np.where(np.sum(q[1:] * q[:-1], axis=1) < 0, -1.0, 1.0))
     q[1:] *= flips[:, None]
-    return q
+    return np.asarray(q)

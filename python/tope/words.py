@@ -7,6 +7,8 @@ from typing import Any
 
 Summary = Mapping[str, Any]
 
+PREFIXES = (("m", 1e3), ("µ", 1e6), ("n", 1e9))
+
 COMPARISON_HEADER = (
     "run",
     "limits",
@@ -24,11 +26,12 @@ COMPARISON_NOTE = (
 
 
 def number(value: float | None, unit: str = "") -> str:
-    """The value to three digits with its unit, or a dash if there is none; small lengths and angles in thousandths."""
+    """The value to three digits with its unit, a small length or angle with a prefix; a dash for none."""
     if value is None:
         return "–"
     if unit in ("m", "rad") and 0 < abs(value) < 0.01:
-        value, unit = 1e3 * value, f"m{unit}"
+        prefix, factor = next((p, f) for p, f in PREFIXES if abs(value) * f >= 1 or p == "n")
+        value, unit = factor * value, prefix + unit
     digits = f"{value:.0f}" if 1e3 <= abs(value) < 1e6 else f"{value:.3g}"
     return f"{digits} {unit}".rstrip()
 
@@ -57,24 +60,14 @@ def summary_rows(summary: Summary) -> list[tuple[str, str]]:
 def tiles(summary: Summary) -> list[tuple[str, str, str]]:
     """The outcome at a glance: (what, figure, what it says)."""
     reached = summary["time_to_goal"]
-    joint, violation = worst(summary["max_limit_violation"])
     jumping, fraction = worst(summary["max_command_jump"])
-    units = {each["name"]: each["unit"] for each in summary["scenario"]["joints"]}
-    crossed = violation is not None and violation > 0
-    distance = None if violation is None else abs(violation)
     return [
         (
             "Goal",
             "not reached" if reached is None else f"reached in {number(reached, 's')}",
             goal_accuracy(summary),
         ),
-        (
-            "Limits",
-            "none" if distance is None else ("crossed" if crossed else "kept"),
-            "no joint has one"
-            if distance is None
-            else f"{'by ' if crossed else ''}{number(distance, units[joint])}{'' if crossed else ' away'}, {joint}",
-        ),
+        ("Limits", *limits_at_a_glance(summary)),
         (
             "Largest jump of a command",
             percent(fraction),
@@ -86,6 +79,16 @@ def tiles(summary: Summary) -> list[tuple[str, str, str]]:
             f"a cycle; slowest {number(summary['cycle_time_us']['max'], 'µs')}",
         ),
     ]
+
+
+def limits_at_a_glance(summary: Summary) -> tuple[str, str]:
+    """Whether all limits were kept, and by how much the nearest one."""
+    joint, violation = worst(summary["max_limit_violation"])
+    if violation is None:
+        return "none", "no joint has one"
+    units = {each["name"]: each["unit"] for each in summary["scenario"]["joints"]}
+    distance = number(abs(violation), units[joint])
+    return ("crossed", f"by {distance}, {joint}") if violation > 0 else ("kept", f"{distance} away, {joint}")
 
 
 def goal_accuracy(summary: Summary) -> str:

@@ -1,6 +1,6 @@
 """A headless Chromium that tests drive over its DevTools protocol.
 
-The binary comes with the npm package @sparticuz/chromium (see viewer/package.json); `make viewer-tests` unpacks it.
+The binary is that of the npm package @sparticuz/chromium, pinned in viewer/; `make viewer-tests` unpacks it.
 """
 
 from __future__ import annotations

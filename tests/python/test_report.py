@@ -327,9 +327,11 @@ def test_json_has_no_numbers_that_json_does_not_know():
     }
 
 
-def test_small_lengths_and_angles_are_told_in_thousandths():
+def test_small_lengths_and_angles_have_a_prefix():
     assert words.number(0.00125, "m") == "1.25 mm"
-    assert words.number(-2e-4, "rad") == "-0.2 mrad"
+    assert words.number(-2e-4, "rad") == "-200 µrad"
+    assert words.number(4.97e-9, "m") == "4.97 nm"
+    assert words.number(7.55e-5, "m") == "75.5 µm"
     assert words.number(0.0125, "m") == "0.0125 m"
     assert words.number(0.0, "m") == "0 m"
     assert words.number(0.001, "m/s") == "0.001 m/s"

@@ -248,6 +248,7 @@ export class Plot {
     ctx.save();
     clip(u);
     ctx.lineWidth = devicePixelRatio;
+    ctx.setLineDash([]); // of the last curve
     ctx.strokeStyle = palette.limit;
     for (const value of this.panel.lines) {
       const y = u.valToPos(value, "y", true);

@@ -60,20 +60,24 @@ export class Plots implements View {
     const legend = figure.querySelector(".legend");
     if (!legend || plot.panel.rows.length) return;
     const entries = plot.curves.map((curve) => {
-      const button = document.createElement("button");
-      button.type = "button";
-      button.className = "entry";
-      button.setAttribute("aria-pressed", "true");
+      // on a page that compares, the runs' own buttons hide curves everywhere
+      const hides = plot.curves.length > 1 && !this.data.compares;
+      const entry = document.createElement(hides ? "button" : "span");
+      entry.className = "entry";
       const swatch = document.createElement("i");
       const output = document.createElement("output");
-      button.append(swatch);
-      if (plot.curves.length > 1) button.append(curve.name);
-      button.append(output);
-      if (this.data.compares) button.disabled = true; // the runs' own buttons hide them everywhere
-      button.addEventListener("click", () => this.toggle(curve, plot, button));
+      entry.append(swatch);
+      // the runs' buttons stay in view and tell their names
+      if (this.data.compares) entry.title = curve.name;
+      else if (plot.curves.length > 1) entry.append(curve.name);
+      entry.append(output);
+      if (hides) {
+        entry.setAttribute("aria-pressed", "true");
+        entry.addEventListener("click", () => this.toggle(curve, plot, entry));
+      }
       this.theme.onChange(() => paintSwatch(swatch, curve.colour, this.theme));
       paintSwatch(swatch, curve.colour, this.theme);
-      legend.append(button);
+      legend.append(entry);
       return { curve, output };
     });
     this.readouts.set(plot, entries);
