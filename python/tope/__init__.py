@@ -22,6 +22,7 @@ from tope._core import (
     UnilateralOptions,
 )
 from tope.compare import compare
+from tope.export import export
 from tope.runs import Run
 from tope.simulation import load_run, simulate
 
@@ -49,6 +50,7 @@ __all__ = [
     "TaskHandle",
     "UnilateralOptions",
     "compare",
+    "export",
     "load_run",
     "simulate",
 ]

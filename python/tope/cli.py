@@ -1,4 +1,4 @@
-"""The command line: tope run, tope compare, tope check."""
+"""The command line: tope run, tope compare, tope check, tope export."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from rich.text import Text
 from tope import _core, words
 from tope.compare import compare as run_comparison
 from tope.compare import known_methods
+from tope.export import export as export_run
 from tope.runs import finite
 from tope.simulation import Progress
 from tope.simulation import simulate as run_scenario
@@ -130,6 +131,22 @@ def check(
         print_inequalities(console, inequalities)
     if not all(each["ok"] for each in inequalities):
         raise typer.Exit(1)
+
+
+@app.command()
+def export(
+    folder: Annotated[Path, typer.Argument(metavar="RUN", help="The folder that a run wrote.")],
+    to: Annotated[str, typer.Option("--to", metavar="FORMAT", help="mcap (Foxglove, PlotJuggler) or rerun.")],
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="FILE", help="The file to write; in RUN by default.")
+    ] = None,
+) -> None:
+    """Write a run in the format of another viewer.
+
+    mcap: ROS 2 messages, for Foxglove and PlotJuggler. rerun: a recording for Rerun.
+    """
+    file = export_run(folder, to=to, out=out)
+    output().print(pairs([("Written to", str(file))]))
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
