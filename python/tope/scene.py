@@ -175,6 +175,9 @@ def obstacles(tree: RobotTree, described: Sequence[Mapping[str, Any]]) -> Iterat
                 continue
             yield {
                 "joint": joint.name,
+                "side": side,
+                "limit": limit,
+                "direction": (sign * joint.axis).tolist(),
                 "label": f"stops {joint.name} at {limit:g} m",
                 **kerb(sign * joint.axis, sign * limit + reach(tree, joint, sign * joint.axis)),
             }
@@ -205,15 +208,12 @@ def kerb(direction: Array, distance: float) -> dict[str, Any]:
 
 def reach(tree: RobotTree, joint: Joint, direction: Array) -> float:
     """How far the first shapes that a joint moves stand out from it in a direction [m]."""
-    level = [joint.child]
     placements = tree.placements({}, 1)
-    while level and not any(tree.visuals.get(link) for link in level):
-        level = [each.child for each in tree.joints if each.parent in level]
     start = placements[joint.child][0, :3, 3]
     extents = [
         float(direction @ (placement[:3, 3] - start)) + half_extent(visual.shape, visual.size, local)
-        for link in level
-        for visual in tree.visuals.get(link, ())
+        for link in tree.first_shapes(joint.child)
+        for visual in tree.visuals[link]
         for placement in [placements[link][0] @ visual.link_T_shape]
         for local in [placement[:3, :3].T @ direction]
     ]

@@ -75,6 +75,13 @@ class RobotTree:
         """The link whose frame is called so: its own name, or that of the joint that carries it."""
         return next((joint.child for joint in self.joints if joint.name == frame), frame)
 
+    def first_shapes(self, link: str) -> list[str]:
+        """The nearest links, from this one outwards, that have a shape."""
+        level = [link]
+        while level and not any(self.visuals.get(each) for each in level):
+            level = [joint.child for joint in self.joints if joint.parent in level]
+        return [each for each in level if self.visuals.get(each)]
+
     def placements(self, positions: Mapping[str, Array], rows: int) -> dict[str, Array]:
         """world_T_link (rows, 4, 4) of every link; joints without `positions` (rows,) are at 0."""
         still = np.zeros(rows)

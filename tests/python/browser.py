@@ -18,7 +18,7 @@ from typing import Any
 
 from websockets.sync.client import connect
 
-UNPACKED = Path(__file__).parents[2] / "viewer" / "node_modules" / ".chromium"
+UNPACKED = Path(__file__).parents[2] / "build" / "chromium"
 FLAGS = (
     "--headless=shell",
     "--no-sandbox",  # works as root, and in containers without user namespaces

@@ -29,6 +29,7 @@ class Exponential {
                     Eigen::Ref<Vector> acceleration) const;
   /// Seconds from the start to the promised arrival: none.
   std::optional<double> duration() const { return std::nullopt; }
+  double gain() const { return options_.gain; }  ///< [1/s]
   void resize(int /*size*/) {}
 
  private:

@@ -34,6 +34,7 @@ class PredefinedTime {
   void acceleration(double t, const VectorArg& error, const VectorArg& error_rate,
                     Eigen::Ref<Vector> acceleration) const;
   std::optional<double> duration() const { return options_.duration; }
+  double gain() const { return options_.gain; }  ///< [1/s]
   void resize(int size);
 
  private:

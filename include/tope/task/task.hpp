@@ -58,6 +58,8 @@ class Task {
   const Vector& drift() const { return drift_; }
   /// Seconds from start to promised arrival, if the reference promises one.
   std::optional<double> duration() const;
+  /// Gain of the reference [1/s].
+  double gain() const;
   /// True when a rotation error lies within 0.05 rad of pi, where its direction is about to flip.
   bool near_flip() const { return near_flip_; }
 

@@ -1,0 +1,355 @@
+"""A live page in the browser: drag the goal, push the obstacle, pull limits in, change the method."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import socket
+import threading
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import viser
+from viser import uplot
+
+from tope import _core, words
+from tope.panels import Array
+from tope.scene import obstacles
+from tope.session import Session, State
+from tope.urdf import Joint, RobotTree, Visual, quaternions, read_urdf
+
+FRAME_RATE = 30.0  # of the scene [1/s]
+PLOT_EVERY = 4  # frames between points of the plots
+PLOT_POINTS = 150  # about 20 s
+WIDEST = 2.0  # slider of a limit that the robot itself hardly has [m, rad]
+ACTING = np.array([213.0, 94.0, 0.0])  # colour of a limit that acts
+CAMERA, LOOK_AT = (1.7, -1.5, 1.1), (0.3, 0.0, 0.2)  # [m]
+OBSTACLE = (86, 120, 154)
+CURVES = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#8a7a00")
+
+
+class Page:
+    """A viser server that shows a session and hands it what people do. All clients see the same."""
+
+    def __init__(self, session: Session, host: str, port: int) -> None:
+        """Errors: Error if the address cannot be served."""
+        require_free(host, port)
+        self.session = session
+        with contextlib.redirect_stdout(io.StringIO()):  # viser prints a banner, whatever it is told
+            self.server = viser.ViserServer(host=host, port=port, label="tope", verbose=False)
+        self.server.initial_camera.position = CAMERA
+        self.server.initial_camera.look_at = LOOK_AT
+        self.server.gui.configure_theme(show_share_button=False, show_logo=False, control_width="large")
+        self.tree = read_urdf(session.scenario["robot"]["urdf"])
+        self.robot = LiveRobot(self.server, self.tree, session.scenario)
+        self.add_goals()
+        self.add_obstacles()
+        self.add_controls()
+        self.plots = Plots(self.server, session.scenario)
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._show, name="page", daemon=True)
+        self._thread.start()
+
+    @property
+    def address(self) -> str:
+        """What to open in a browser."""
+        return f"http://{self.server.get_host()}:{self.server.get_port()}"
+
+    def close(self) -> None:
+        """End the page; the session goes on."""
+        self._stop.set()
+        self._thread.join()
+        self.server.stop()
+
+    def add_goals(self) -> None:
+        """A handle to drag at every goal."""
+        for frame, (position, wxyz) in self.session.state().goals.items():
+            handle = self.server.scene.add_transform_controls(
+                f"/goal/{frame}", scale=0.18, position=np.array(position), wxyz=np.array(wxyz)
+            )
+            handle.on_update(self.goal_dragged(frame, handle))
+
+    def goal_dragged(
+        self, frame: str, handle: viser.TransformControlsHandle
+    ) -> Callable[[viser.TransformControlsEvent], None]:
+        """What to do when a goal's handle moved."""
+
+        def move(_: viser.TransformControlsEvent) -> None:
+            self.session.put_goal(frame, handle.position.tolist(), handle.wxyz.tolist())
+
+        return move
+
+    def add_obstacles(self) -> None:
+        """A kerb at every limit that is an obstacle; push it along the joint's axis."""
+        for obstacle in obstacles(self.tree, self.session.scenario["joints"]):
+            key = f"limits.joints.{obstacle['joint']}.{obstacle['side']}"
+            axis = int(np.argmax(np.abs(obstacle["direction"])))
+            handle = self.server.scene.add_transform_controls(
+                f"/obstacle/{obstacle['joint']}_{obstacle['side']}",
+                scale=0.25,
+                active_axes=(axis == 0, axis == 1, False),
+                disable_rotations=True,
+                disable_sliders=True,
+                position=np.array(obstacle["xyz"]),
+            )
+            self.server.scene.add_box(
+                f"{handle.name}/kerb", color=OBSTACLE, dimensions=tuple(obstacle["size"]), opacity=0.7
+            )
+            handle.on_update(self.obstacle_pushed(key, obstacle, axis, handle))
+
+    def obstacle_pushed(
+        self, key: str, obstacle: Mapping[str, Any], axis: int, handle: viser.TransformControlsHandle
+    ) -> Callable[[viser.TransformControlsEvent], None]:
+        """What to do when an obstacle moved: its limit moves along."""
+        offset = obstacle["limit"] - obstacle["xyz"][axis]
+
+        def move(_: viser.TransformControlsEvent) -> None:
+            self.change({key: float(handle.position[axis]) + offset})
+
+        return move
+
+    def add_controls(self) -> None:
+        """The sliders and buttons."""
+        gui, scenario = self.server.gui, self.session.scenario
+        self.told = gui.add_markdown("")
+        self.add_run_buttons()
+        method = gui.add_dropdown("limits.method", _core.LIMIT_METHODS, initial_value=scenario["method"])
+        method.on_update(lambda _: self.change({"limits.method": method.value}))
+        self.add_slider("limits.buffer", 0.02, 0.3, scenario["joints"][0]["buffer"])
+        self.add_slider("limits.gain", 0.5, 20.0, scenario["limit_gain"])
+        with gui.add_folder("Tasks"):
+            for number, task in enumerate(scenario["tasks"]):
+                self.add_task(number, task)
+        with gui.add_folder("Limits", expand_by_default=False):
+            for joint in scenario["joints"]:
+                self.add_limits(joint)
+
+    def add_run_buttons(self) -> None:
+        """Pause and restart."""
+        pause = self.server.gui.add_checkbox("Pause", initial_value=False)
+
+        @pause.on_update
+        def _(_: Any) -> None:
+            self.session.paused = pause.value
+
+        self.server.gui.add_button("Restart").on_click(lambda _: self.session.restart())
+
+    def add_slider(self, key: str, low: float, high: float, value: float) -> None:
+        """A slider for a key of the scenario."""
+        low, high = min(low, value), max(high, value)
+        slider = self.server.gui.add_slider(
+            key, min=low, max=high, step=(high - low) / 500, initial_value=value
+        )
+        slider.on_update(lambda _: self.change({key: slider.value}))
+
+    def add_task(self, number: int, task: Mapping[str, Any]) -> None:
+        """A task's presence and its gain."""
+        label = f"{task['level']}. {task['name']}"
+        present = self.server.gui.add_checkbox(label, initial_value=True)
+        present.on_update(lambda _: self.session.show_task(task["name"], present.value))
+        if task["type"] == "damping":
+            return
+        due = task["goal_time"]
+        kind = "exponential" if due is None else f"predefined_time, duration: {due}"
+        slider = self.server.gui.add_slider(
+            f"gain of {task['name']}",
+            min=0.2,
+            max=max(20.0, task["gain"]),
+            step=0.1,
+            initial_value=task["gain"],
+        )
+        slider.on_update(
+            lambda _: self.change({f"tasks.{number}.reference": f"{{type: {kind}, gain: {slider.value}}}"})
+        )
+
+    def add_limits(self, joint: Mapping[str, Any]) -> None:
+        """A joint's limits, to pull in."""
+        name = joint["name"]
+        lower, upper = (
+            joint[side] if joint[side] is not None and abs(joint[side]) < 2 * np.pi else sign * WIDEST
+            for side, sign in (("lower", -1.0), ("upper", 1.0))
+        )
+        slider = self.server.gui.add_multi_slider(
+            f"{name} [{joint['unit']}]",
+            min=min(lower, -WIDEST),
+            max=max(upper, WIDEST),
+            step=0.001,
+            initial_value=(lower, upper),
+            min_range=4 * joint["buffer"],
+        )
+        before = [lower, upper]
+
+        @slider.on_update
+        def _(_: Any) -> None:
+            keys = [f"limits.joints.{name}.{side}" for side in ("lower", "upper")]
+            changed = {
+                key: now for key, now, was in zip(keys, slider.value, before, strict=True) if now != was
+            }
+            before[:] = slider.value
+            if changed:
+                self.change(changed)
+
+    def change(self, keys: Mapping[str, Any]) -> None:
+        """Change the scenario, or say why not."""
+        try:
+            self.session.change(keys)
+            self.refused = ""
+        except _core.Error as error:
+            self.refused = str(error)
+
+    refused = ""  # why the last change did not do
+
+    def _show(self) -> None:
+        frame = 0
+        while not self._stop.wait(1 / FRAME_RATE):
+            state = self.session.state()
+            with self.server.atomic():
+                self.robot.show(state)
+                if frame % PLOT_EVERY == 0:
+                    self.plots.show(state)
+                    self.told.content = told(self.session.scenario, state, self.refused)
+            frame += 1
+
+
+class LiveRobot:
+    """The robot's links in the scene."""
+
+    def __init__(self, server: viser.ViserServer, tree: RobotTree, scenario: Mapping[str, Any]) -> None:
+        """Draw the robot of a scenario, with all joints at 0."""
+        server.scene.set_up_direction("+z")
+        server.scene.add_grid("/floor", width=8, height=8, cell_size=0.25, section_size=1.0)
+        self.names = [joint["name"] for joint in scenario["joints"]]
+        held = scenario["robot"]["locked_joints"]
+        paths = {tree.root: "/robot"}
+        self.frames: dict[str, tuple[Joint, viser.FrameHandle]] = {}
+        self.shapes: dict[str, list[tuple[Any, Array]]] = {}
+        for joint in tree.joints:
+            paths[joint.child] = f"{paths[joint.parent]}/{joint.child}"
+            frame = server.scene.add_frame(paths[joint.child], show_axes=False)
+            place(frame, joint, held.get(joint.name, 0.0))
+            self.frames[joint.name] = (joint, frame)
+        for link, path in paths.items():
+            self.shapes[link] = [
+                (add_shape(server, f"{path}/shape_{i}", visual), 255 * np.array(visual.colour))
+                for i, visual in enumerate(tree.visuals.get(link, ()))
+            ]
+        self.moved = [tree.first_shapes(self.frames[name][0].child) for name in self.names]
+
+    def show(self, state: State) -> None:
+        """Move the joints, and colour links as far as the limits of their joints act."""
+        acting = {link: 0.0 for links in self.moved for link in links}
+        for i, name in enumerate(self.names):
+            place(self.frames[name][1], self.frames[name][0], float(state.position[i]))
+            share = round(float(max(state.upper[i], state.lower[i])), 2)
+            acting.update({link: max(acting[link], share) for link in self.moved[i]})
+        for link, share in acting.items():
+            for handle, own in self.shapes.get(link, ()):
+                colour = tuple(int(c) for c in own + 0.85 * share * (ACTING - own))
+                if tuple(handle.color) != colour:
+                    handle.color = colour
+
+
+class Plots:
+    """Activations and commands of the last seconds."""
+
+    def __init__(self, server: viser.ViserServer, scenario: Mapping[str, Any]) -> None:
+        """Add empty plots."""
+        self.bounds = np.array([joint["bound"] or np.nan for joint in scenario["joints"]])
+        self.rows: deque[Array] = deque(maxlen=PLOT_POINTS)
+        names = [joint["name"] for joint in scenario["joints"]]
+        what = "torque" if scenario["mode"] == "torque" else "command"
+        self.activations = self.add(server, "How far limits act (lower: negative)", names)
+        self.commands = self.add(server, f"Each {what} over its bound", names)
+
+    def add(self, server: viser.ViserServer, title: str, names: Sequence[str]) -> viser.GuiUplotHandle:
+        """A plot with a curve for each joint."""
+        curves = [
+            uplot.Series(label=name, stroke=CURVES[i % len(CURVES)], width=1.5)
+            for i, name in enumerate(names)
+        ]
+        return server.gui.add_uplot(
+            data=tuple(np.zeros(2) for _ in range(len(names) + 1)),
+            series=(uplot.Series(label="t"), *curves),
+            title=title,
+            scales={"x": uplot.Scale(time=False), "y": uplot.Scale(auto=False, range=(-1.05, 1.05))},
+            aspect=1.7,
+        )
+
+    def show(self, state: State) -> None:
+        """Add the present moment."""
+        if self.rows and state.time < self.rows[-1][0]:
+            self.rows.clear()  # the simulation was started anew
+        signed = np.where(state.upper >= state.lower, state.upper, -state.lower)
+        self.rows.append(np.concatenate([[state.time], signed, state.command / self.bounds]))
+        columns = np.ascontiguousarray(np.array(self.rows).T)
+        n = len(self.bounds)
+        self.activations.data = (columns[0], *columns[1 : n + 1])
+        self.commands.data = (columns[0], *columns[n + 1 :])
+
+
+def require_free(host: str, port: int) -> None:
+    """Raise Error unless the address can be served; viser itself would take another port in silence."""
+    with contextlib.closing(socket.socket()) as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((host, port))
+        except OSError as error:
+            raise _core.Error(
+                f"cannot serve {host}:{port}: {error.strerror}; choose another with --port"
+            ) from error
+
+
+def place(frame: viser.FrameHandle, joint: Joint, q: float) -> None:
+    """Put a link where its joint's position says."""
+    placement = joint.placement(np.array([q]))[0]
+    frame.position = placement[:3, 3]
+    frame.wxyz = np.roll(quaternions(placement[None, :3, :3])[0], 1)
+
+
+def add_shape(server: viser.ViserServer, path: str, visual: Visual) -> Any:
+    """A shape of a link."""
+    colour = np.array([int(255 * channel) for channel in visual.colour])
+    where: dict[str, Any] = {
+        "position": visual.link_T_shape[:3, 3],
+        "wxyz": np.roll(quaternions(visual.link_T_shape[None, :3, :3])[0], 1),
+    }
+    if visual.shape == "box":
+        x, y, z = visual.size
+        return server.scene.add_box(path, color=colour, dimensions=(x, y, z), **where)
+    if visual.shape == "sphere":
+        return server.scene.add_icosphere(path, radius=visual.size[0], color=colour, **where)
+    radius, height = visual.size
+    return server.scene.add_cylinder(path, radius=radius, height=height, color=colour, **where)
+
+
+def told(scenario: Mapping[str, Any], state: State, refused: str) -> str:
+    """The state in words, as Markdown."""
+    lines = [f"**{state.time:.1f} s** · {scenario['method']} · {state.status.replace('|', ', ')}"]
+    for task in words.by_level(scenario["tasks"]):
+        error = state.errors[task["name"]]
+        said = "not present" if error is None else words.number(error, words.unit(task))
+        lines.append(f"error of {task['name']}: {said}")
+    if state.lost > 0:
+        lines.append(f"{words.number(state.lost, 's')} lost: this machine is too slow")
+    if refused:
+        lines.append(f"**Not changed:** {refused}")
+    return "  \n".join(lines)
+
+
+def play(
+    scenario: str, overrides: Mapping[str, str], *, host: str, port: int, ready: Callable[[str], None]
+) -> None:
+    """Serve a scenario until interrupted; `ready` is called with the page's address."""
+    require_free(host, port)
+    session = Session(scenario, overrides)
+    page = Page(session, host, port)
+    ready(page.address)
+    try:
+        threading.Event().wait()
+    except KeyboardInterrupt:
+        pass
+    finally:
+        page.close()
+        session.stop()
