@@ -14,7 +14,6 @@ import zstandard
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
-
 CAMERA = {
     "wxyz": [1.0, 0.0, 0.0, 0.0],
     "position": [1.0, 0.0, 0.0],
@@ -29,7 +28,7 @@ CAMERA = {
 
 
 class LiveClient:
-    """Keeps what the server says: `controls` by label, `placements` by scene node, `shown` properties by uuid."""
+    """Keeps what it is told: `controls` by label, `placements` by scene node, properties `shown` by uuid."""
 
     def __init__(self, port: int) -> None:
         self.socket = connect(

@@ -1,4 +1,4 @@
-"""The live page: clients that speak its protocol, the session behind it, the command line, a look by a browser.
+"""The live page: clients that speak its protocol, the session behind it, the command line, a browser.
 
 Not covered here: dragging with a real pointer, which is viser's own.
 """
@@ -103,10 +103,10 @@ def test_what_clients_see_is_where_pinocchio_says_the_robot_is(page, session):
 
 def test_the_method_is_switched_for_all_and_the_robot_follows(page, session):
     one, two = client_of(page), client_of(page)
-    wait_for(lambda: session.state().position[0] > 0.3)
     one.set("limits.method", "none")
     two.wait_for(lambda: two.value("limits.method") == "none")
     two.wait_for(lambda: two.reads("· none ·"))
+    two.set("Restart", True)
     wait_for(lambda: session.state().position[0] > 0.5)  # through the obstacle at 0.35 m
     two.set("limits.method", "unilateral")
     one.wait_for(lambda: one.reads("· unilateral ·"))
