@@ -67,6 +67,11 @@ campaign-goals: build
 campaign-limits: build
 	$(BIN)/python bench/random_limits.py
 
+# The pictures of docs/, from real runs in a real browser.
+.PHONY: pictures
+pictures: build viewer-tests
+	PYTHONPATH=tests/python $(BIN)/python docs/pictures.py
+
 lint:
 	$(MAKE) build viewer-tests TESTS=ON
 	$(NPM) run --silent check

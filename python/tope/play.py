@@ -18,14 +18,14 @@ from tope import _core, words
 from tope.panels import Array
 from tope.scene import obstacles
 from tope.session import Session, State
-from tope.urdf import Joint, RobotTree, Visual, quaternions, read_urdf
+from tope.urdf import Colour, Joint, RobotTree, Visual, quaternions, read_urdf
 
 FRAME_RATE = 30.0  # of the scene [1/s]
 PLOT_EVERY = 4  # frames between points of the plots
 PLOT_POINTS = 150  # about 20 s
 WIDEST = 2.0  # slider of a limit that the robot itself hardly has [m, rad]
 ACTING = np.array([213.0, 94.0, 0.0])  # colour of a limit that acts
-CAMERA, LOOK_AT = (1.7, -1.5, 1.1), (0.3, 0.0, 0.2)  # [m]
+CAMERA, LOOK_AT = (1.45, -1.25, 0.95), (0.3, 0.1, 0.15)  # [m]
 OBSTACLE = (86, 120, 154)
 CURVES = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#8a7a00")
 
@@ -232,7 +232,7 @@ class LiveRobot:
             self.frames[joint.name] = (joint, frame)
         for link, path in paths.items():
             self.shapes[link] = [
-                (add_shape(server, f"{path}/shape_{i}", visual), 255 * np.array(visual.colour))
+                (add_shape(server, f"{path}/shape_{i}", visual), muted(visual.colour))
                 for i, visual in enumerate(tree.visuals.get(link, ()))
             ]
         self.moved = [tree.first_shapes(self.frames[name][0].child) for name in self.names]
@@ -260,10 +260,12 @@ class Plots:
         self.rows: deque[Array] = deque(maxlen=PLOT_POINTS)
         names = [joint["name"] for joint in scenario["joints"]]
         what = "torque" if scenario["mode"] == "torque" else "command"
-        self.activations = self.add(server, "How far limits act (lower: negative)", names)
-        self.commands = self.add(server, f"Each {what} over its bound", names)
+        self.activations = self.add(server, "How far limits act (lower: negative)", names, legend=False)
+        self.commands = self.add(server, f"Each {what} over its bound", names, legend=True)
 
-    def add(self, server: viser.ViserServer, title: str, names: Sequence[str]) -> viser.GuiUplotHandle:
+    def add(
+        self, server: viser.ViserServer, title: str, names: Sequence[str], *, legend: bool
+    ) -> viser.GuiUplotHandle:
         """A plot with a curve for each joint."""
         curves = [
             uplot.Series(label=name, stroke=CURVES[i % len(CURVES)], width=1.5)
@@ -274,7 +276,8 @@ class Plots:
             series=(uplot.Series(label="t"), *curves),
             title=title,
             scales={"x": uplot.Scale(time=False), "y": uplot.Scale(auto=False, range=(-1.05, 1.05))},
-            aspect=1.7,
+            legend=uplot.Legend(show=legend),
+            aspect=2.2,
         )
 
     def show(self, state: State) -> None:
@@ -308,9 +311,15 @@ def place(frame: viser.FrameHandle, joint: Joint, q: float) -> None:
     frame.wxyz = np.roll(quaternions(placement[None, :3, :3])[0], 1)
 
 
+def muted(colour: Colour) -> Array:
+    """A colour from 0 to 255, greyer than it is, so that an acting limit stands out."""
+    channels = np.array(colour)
+    return np.asarray(255 * (0.35 * channels + 0.65 * (0.15 + 0.7 * channels.mean())))
+
+
 def add_shape(server: viser.ViserServer, path: str, visual: Visual) -> Any:
     """A shape of a link."""
-    colour = np.array([int(255 * channel) for channel in visual.colour])
+    colour = muted(visual.colour).astype(int)
     where: dict[str, Any] = {
         "position": visual.link_T_shape[:3, 3],
         "wxyz": np.roll(quaternions(visual.link_T_shape[None, :3, :3])[0], 1),

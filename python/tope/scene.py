@@ -85,6 +85,7 @@ def scene(runs: Mapping[str, Run]) -> dict[str, Any] | None:
         "joints": [joint["name"] for joint in first["joints"]],
         "links": [link_data(tree, link) for link in tree.links],
         "tree": [joint_data(joint, first["robot"]["locked_joints"]) for joint in tree.joints],
+        "meshes": tree.meshes,
         "obstacles": list(obstacles(tree, first["joints"])),
         "runs": [replay(tree, run) for run in runs.values()],
     }

@@ -82,6 +82,11 @@ export interface ReplayData {
 /** Something in the way of a joint, drawn where the robot would meet it. */
 export interface ObstacleData {
   joint: string;
+  side: "lower" | "upper";
+  /** Of the joint [m]. */
+  limit: number;
+  /** From the robot to the obstacle, of length 1. */
+  direction: Triple;
   label: string;
   size: Triple;
   xyz: Triple;
@@ -91,6 +96,8 @@ export interface SceneData {
   joints: string[];
   links: LinkData[];
   tree: JointData[];
+  /** How many shapes of the robot are meshes, which are left out. */
+  meshes: number;
   obstacles: ObstacleData[];
   runs: ReplayData[];
 }
