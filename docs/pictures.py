@@ -80,14 +80,16 @@ def animate(page: Page) -> None:
         page.run(f"tope.setTime({i / FRAME_RATE})")
         frames.append(Image.open(io.BytesIO(page.picture())).convert("RGB"))
     pause = [1000 // FRAME_RATE] * (len(frames) - 1) + [1500]
-    settings = {"save_all": True, "duration": pause, "loop": 0, "quality": 72, "method": 6}
+    settings = {"save_all": True, "duration": pause, "loop": 0, "quality": 60, "method": 6}
     frames[0].save(DOCS / "replay.webp", append_images=frames[1:], **settings)
     page.close()
 
 
 def save(name: str, png: bytes) -> None:
-    """Save a picture, packed as well as can be."""
-    Image.open(io.BytesIO(png)).convert("RGB").save(DOCS / f"{name}.png", optimize=True)
+    """Save a picture with few colours, which keeps it small."""
+    picture = Image.open(io.BytesIO(png)).convert("RGB")
+    few = picture.quantize(256, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
+    few.save(DOCS / f"{name}.png", optimize=True)
 
 
 if __name__ == "__main__":

@@ -6,28 +6,24 @@ import contextlib
 import io
 import socket
 import threading
-from collections import deque
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 import viser
-from viser import uplot
 
 from tope import _core, words
-from tope.panels import Array
+from tope.live_obstacle import LiveObstacle
+from tope.live_plots import LivePlots
+from tope.live_robot import LiveRobot
 from tope.scene import obstacles
 from tope.session import Session, State
-from tope.urdf import Colour, Joint, RobotTree, Visual, quaternions, read_urdf
+from tope.urdf import read_urdf
 
 FRAME_RATE = 30.0  # of the scene [1/s]
 PLOT_EVERY = 4  # frames between points of the plots
-PLOT_POINTS = 150  # about 20 s
 WIDEST = 2.0  # slider of a limit that the robot itself hardly has [m, rad]
-ACTING = np.array([213.0, 94.0, 0.0])  # colour of a limit that acts
 CAMERA, LOOK_AT = (1.45, -1.25, 0.95), (0.3, 0.1, 0.15)  # [m]
-OBSTACLE = (86, 120, 154)
-CURVES = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#8a7a00")
 
 
 class Page:
@@ -45,9 +41,9 @@ class Page:
         self.tree = read_urdf(session.scenario["robot"]["urdf"])
         self.robot = LiveRobot(self.server, self.tree, session.scenario)
         self.add_goals()
-        self.add_obstacles()
+        self.kerbs = self.add_obstacles()
         self.add_controls()
-        self.plots = Plots(self.server, session.scenario)
+        self.plots = LivePlots(self.server, session.scenario)
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._show, name="page", daemon=True)
         self._thread.start()
@@ -81,34 +77,10 @@ class Page:
 
         return move
 
-    def add_obstacles(self) -> None:
-        """A kerb at every limit that is an obstacle; push it along the joint's axis."""
-        for obstacle in obstacles(self.tree, self.session.scenario["joints"]):
-            key = f"limits.joints.{obstacle['joint']}.{obstacle['side']}"
-            axis = int(np.argmax(np.abs(obstacle["direction"])))
-            handle = self.server.scene.add_transform_controls(
-                f"/obstacle/{obstacle['joint']}_{obstacle['side']}",
-                scale=0.25,
-                active_axes=(axis == 0, axis == 1, False),
-                disable_rotations=True,
-                disable_sliders=True,
-                position=np.array(obstacle["xyz"]),
-            )
-            self.server.scene.add_box(
-                f"{handle.name}/kerb", color=OBSTACLE, dimensions=tuple(obstacle["size"]), opacity=0.7
-            )
-            handle.on_update(self.obstacle_pushed(key, obstacle, axis, handle))
-
-    def obstacle_pushed(
-        self, key: str, obstacle: Mapping[str, Any], axis: int, handle: viser.TransformControlsHandle
-    ) -> Callable[[viser.TransformControlsEvent], None]:
-        """What to do when an obstacle moved: its limit moves along."""
-        offset = obstacle["limit"] - obstacle["xyz"][axis]
-
-        def move(_: viser.TransformControlsEvent) -> None:
-            self.change({key: float(handle.position[axis]) + offset})
-
-        return move
+    def add_obstacles(self) -> list[LiveObstacle]:
+        """What is in the robot's way, to push."""
+        found = obstacles(self.tree, self.session.scenario["joints"])
+        return [LiveObstacle(self.server, each, self.change) for each in found]
 
     def add_controls(self) -> None:
         """The sliders and buttons."""
@@ -198,6 +170,8 @@ class Page:
             self.refused = ""
         except _core.Error as error:
             self.refused = str(error)
+        for kerb in self.kerbs:
+            kerb.show(self.session.scenario["joints"])
 
     refused = ""  # why the last change did not do
 
@@ -213,85 +187,6 @@ class Page:
             frame += 1
 
 
-class LiveRobot:
-    """The robot's links in the scene."""
-
-    def __init__(self, server: viser.ViserServer, tree: RobotTree, scenario: Mapping[str, Any]) -> None:
-        """Draw the robot of a scenario, with all joints at 0."""
-        server.scene.set_up_direction("+z")
-        server.scene.add_grid("/floor", width=8, height=8, cell_size=0.25, section_size=1.0)
-        self.names = [joint["name"] for joint in scenario["joints"]]
-        held = scenario["robot"]["locked_joints"]
-        paths = {tree.root: "/robot"}
-        self.frames: dict[str, tuple[Joint, viser.FrameHandle]] = {}
-        self.shapes: dict[str, list[tuple[Any, Array]]] = {}
-        for joint in tree.joints:
-            paths[joint.child] = f"{paths[joint.parent]}/{joint.child}"
-            frame = server.scene.add_frame(paths[joint.child], show_axes=False)
-            place(frame, joint, held.get(joint.name, 0.0))
-            self.frames[joint.name] = (joint, frame)
-        for link, path in paths.items():
-            self.shapes[link] = [
-                (add_shape(server, f"{path}/shape_{i}", visual), muted(visual.colour))
-                for i, visual in enumerate(tree.visuals.get(link, ()))
-            ]
-        self.moved = [tree.first_shapes(self.frames[name][0].child) for name in self.names]
-
-    def show(self, state: State) -> None:
-        """Move the joints, and colour links as far as the limits of their joints act."""
-        acting = {link: 0.0 for links in self.moved for link in links}
-        for i, name in enumerate(self.names):
-            place(self.frames[name][1], self.frames[name][0], float(state.position[i]))
-            share = round(float(max(state.upper[i], state.lower[i])), 2)
-            acting.update({link: max(acting[link], share) for link in self.moved[i]})
-        for link, share in acting.items():
-            for handle, own in self.shapes.get(link, ()):
-                colour = tuple(int(c) for c in own + 0.85 * share * (ACTING - own))
-                if tuple(handle.color) != colour:
-                    handle.color = colour
-
-
-class Plots:
-    """Activations and commands of the last seconds."""
-
-    def __init__(self, server: viser.ViserServer, scenario: Mapping[str, Any]) -> None:
-        """Add empty plots."""
-        self.bounds = np.array([joint["bound"] or np.nan for joint in scenario["joints"]])
-        self.rows: deque[Array] = deque(maxlen=PLOT_POINTS)
-        names = [joint["name"] for joint in scenario["joints"]]
-        what = "torque" if scenario["mode"] == "torque" else "command"
-        self.activations = self.add(server, "How far limits act (lower: negative)", names, legend=False)
-        self.commands = self.add(server, f"Each {what} over its bound", names, legend=True)
-
-    def add(
-        self, server: viser.ViserServer, title: str, names: Sequence[str], *, legend: bool
-    ) -> viser.GuiUplotHandle:
-        """A plot with a curve for each joint."""
-        curves = [
-            uplot.Series(label=name, stroke=CURVES[i % len(CURVES)], width=1.5)
-            for i, name in enumerate(names)
-        ]
-        return server.gui.add_uplot(
-            data=tuple(np.zeros(2) for _ in range(len(names) + 1)),
-            series=(uplot.Series(label="t"), *curves),
-            title=title,
-            scales={"x": uplot.Scale(time=False), "y": uplot.Scale(auto=False, range=(-1.05, 1.05))},
-            legend=uplot.Legend(show=legend),
-            aspect=2.2,
-        )
-
-    def show(self, state: State) -> None:
-        """Add the present moment."""
-        if self.rows and state.time < self.rows[-1][0]:
-            self.rows.clear()  # the simulation was started anew
-        signed = np.where(state.upper >= state.lower, state.upper, -state.lower)
-        self.rows.append(np.concatenate([[state.time], signed, state.command / self.bounds]))
-        columns = np.ascontiguousarray(np.array(self.rows).T)
-        n = len(self.bounds)
-        self.activations.data = (columns[0], *columns[1 : n + 1])
-        self.commands.data = (columns[0], *columns[n + 1 :])
-
-
 def require_free(host: str, port: int) -> None:
     """Raise Error unless the address can be served; viser itself would take another port in silence."""
     with contextlib.closing(socket.socket()) as probe:
@@ -302,35 +197,6 @@ def require_free(host: str, port: int) -> None:
             raise _core.Error(
                 f"cannot serve {host}:{port}: {error.strerror}; choose another with --port"
             ) from error
-
-
-def place(frame: viser.FrameHandle, joint: Joint, q: float) -> None:
-    """Put a link where its joint's position says."""
-    placement = joint.placement(np.array([q]))[0]
-    frame.position = placement[:3, 3]
-    frame.wxyz = np.roll(quaternions(placement[None, :3, :3])[0], 1)
-
-
-def muted(colour: Colour) -> Array:
-    """A colour from 0 to 255, greyer than it is, so that an acting limit stands out."""
-    channels = np.array(colour)
-    return np.asarray(255 * (0.35 * channels + 0.65 * (0.15 + 0.7 * channels.mean())))
-
-
-def add_shape(server: viser.ViserServer, path: str, visual: Visual) -> Any:
-    """A shape of a link."""
-    colour = muted(visual.colour).astype(int)
-    where: dict[str, Any] = {
-        "position": visual.link_T_shape[:3, 3],
-        "wxyz": np.roll(quaternions(visual.link_T_shape[None, :3, :3])[0], 1),
-    }
-    if visual.shape == "box":
-        x, y, z = visual.size
-        return server.scene.add_box(path, color=colour, dimensions=(x, y, z), **where)
-    if visual.shape == "sphere":
-        return server.scene.add_icosphere(path, radius=visual.size[0], color=colour, **where)
-    radius, height = visual.size
-    return server.scene.add_cylinder(path, radius=radius, height=height, color=colour, **where)
 
 
 def told(scenario: Mapping[str, Any], state: State, refused: str) -> str:

@@ -77,8 +77,8 @@ class Browser:
         return page
 
     def close(self) -> None:
-        self.process.terminate()
-        self.process.wait(10)
+        self.process.kill()  # it has nothing to save
+        self.process.wait()
         self.log.close()
 
 
@@ -135,9 +135,7 @@ class Page:
         assert self.loaded, f"{url} did not load"
         self.settle(3)
 
-    def view(
-        self, width: int = 1280, height: int = 800, dark: bool = False, calm: bool = False, scale: float = 1
-    ) -> None:
+    def view(self, width: int = 1280, height: int = 800, dark: bool = False, scale: float = 1) -> None:
         """The window [px], and what the reader's system prefers."""
         self.call(
             "Emulation.setDeviceMetricsOverride",
@@ -146,11 +144,8 @@ class Page:
             deviceScaleFactor=scale,
             mobile=width < 600,
         )
-        features = [
-            {"name": "prefers-color-scheme", "value": "dark" if dark else "light"},
-            {"name": "prefers-reduced-motion", "value": "reduce" if calm else "no-preference"},
-        ]
-        self.call("Emulation.setEmulatedMedia", features=features)
+        scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
+        self.call("Emulation.setEmulatedMedia", features=[scheme])
 
     def run(self, script: str) -> Any:
         """The value of a JavaScript expression, awaited."""

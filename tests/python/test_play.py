@@ -122,6 +122,16 @@ def test_an_obstacle_that_is_pushed_moves_the_robot(page, session):
     assert upper == pytest.approx(0.2, abs=1e-6)
 
 
+def test_an_obstacle_stands_where_its_limit_is(page, session):
+    client = client_of(page)
+    client.set("base_x [m]", [-2.0, 0.2])
+    client.wait_for(
+        lambda: client.placements["/obstacle/base_x_upper"]["position"][0] == pytest.approx(0.515)
+    )
+    client.drag("/obstacle/base_x_upper", [9.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0])
+    wait_for(lambda: session.scenario["joints"][0]["upper"] > 8)
+
+
 def test_a_limit_is_pulled_in(page, session):
     client = client_of(page)
     client.set("arm_joint_2 [rad]", [-1.117, 0.5])
