@@ -57,14 +57,16 @@ void ClosedLoop::insert(std::size_t task, double over) {
 }
 
 void ClosedLoop::remove(std::size_t task, double over) {
-  if (handles_[task]) {
-    controller_->remove(*handles_[task], {.over = over});
-    handles_[task].reset();
+  std::optional<TaskHandle>& handle = handles_[task];
+  if (handle) {
+    controller_->remove(*handle, {.over = over});
+    handle.reset();
   }
 }
 
 const Task* ClosedLoop::task(std::size_t task) const {
-  return handles_[task] ? &controller_->task(*handles_[task]) : nullptr;
+  const std::optional<TaskHandle>& handle = handles_[task];
+  return handle ? &controller_->task(*handle) : nullptr;
 }
 
 std::optional<MecanumBase::Wheels> ClosedLoop::wheels() const {

@@ -85,7 +85,9 @@ void LiveSimulation::advance(double seconds) {
     throw Error("advance: must be zero or positive and finite [s], got " + std::to_string(seconds));
   }
   const double dt = loop_.scenario().controller.dt;
-  for (left_over_ += seconds; left_over_ >= dt; left_over_ -= dt) {
+  left_over_ += seconds;
+  while (left_over_ >= dt) {
+    left_over_ -= dt;
     for (const auto& [frame, goal] : goals_) {
       goal->advance(dt);
     }

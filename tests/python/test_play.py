@@ -125,9 +125,8 @@ def test_an_obstacle_that_is_pushed_moves_the_robot(page, session):
 def test_an_obstacle_stands_where_its_limit_is(page, session):
     client = client_of(page)
     client.set("base_x [m]", [-2.0, 0.2])
-    client.wait_for(
-        lambda: client.placements["/obstacle/base_x_upper"]["position"][0] == pytest.approx(0.515)
-    )
+    kerb = client.placements["/obstacle/base_x_upper"]
+    client.wait_for(lambda: kerb["position"][0] == pytest.approx(0.515))
     client.drag("/obstacle/base_x_upper", [9.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0])
     wait_for(lambda: session.scenario["joints"][0]["upper"] > 8)
 
