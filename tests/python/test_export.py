@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pinocchio
 import pytest
+from kinematics import frames, placement
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rerun.chunk import RrdReader
@@ -76,32 +77,18 @@ def read_rerun(file):
     return found
 
 
-def placements(run, row):
-    """Pinocchio's placements of all frames at a row of the log, gripper closed."""
-    model = pinocchio.buildModelFromUrdf(str(ROOT / "robots/youbot/youbot.urdf"))
-    data = model.createData()
-    q = pinocchio.neutral(model)
-    for joint in run.scenario["joints"]:
-        place = model.joints[model.getJointId(joint["name"])]
-        value = run.log[f"q.{joint['name']}"][row]
-        q[place.idx_q : place.idx_q + place.nq] = [np.cos(value), np.sin(value)] if place.nq == 2 else value
-    pinocchio.framesForwardKinematics(model, data, q)
-    return {frame.name: data.oMf[i] for i, frame in enumerate(model.frames)}
+def expected_frames(run, row):
+    names = [joint["name"] for joint in run.scenario["joints"]]
+    return frames({name: run.log[f"q.{name}"][row] for name in names})
 
 
 def chained(steps, link):
     """world_T_link of {child: (parent, SE3)}."""
-    placement = pinocchio.SE3.Identity()
+    world = pinocchio.SE3.Identity()
     while link in steps:
         link, step = steps[link]
-        placement = step * placement
-    return placement
-
-
-def se3(translation, xyzw):
-    return pinocchio.SE3(
-        pinocchio.Quaternion(np.array(xyzw, dtype=float)), np.array(translation, dtype=float)
-    )
+        world = step * world
+    return world
 
 
 def test_mcap_holds_every_row_of_joints_and_commands(topics, run):
@@ -127,8 +114,10 @@ def test_mcap_of_torque_mode_holds_efforts(tmp_path):
 @pytest.mark.parametrize("row", [0, 333, 800])
 def test_transforms_put_every_link_where_pinocchio_says(topics, run, row):
     stamped = [*topics["/tf_static"][0][1].transforms, *topics["/tf"][row][1].transforms]
-    steps = {each.child_frame_id: (each.header.frame_id, se3(*vectors(each.transform))) for each in stamped}
-    expected = placements(run, row)
+    steps = {
+        each.child_frame_id: (each.header.frame_id, placement(*vectors(each.transform))) for each in stamped
+    }
+    expected = expected_frames(run, row)
     assert {"base_link", "arm_link_5", "ee", "gripper_finger_l_link"} <= set(steps)
     for link in steps:
         np.testing.assert_allclose(chained(steps, link).homogeneous, expected[link].homogeneous, atol=1e-9)
@@ -200,20 +189,20 @@ def test_rerun_holds_every_column_of_the_log(columns, run):
 
 @pytest.mark.parametrize("row", [0, 333, 800])
 def test_rerun_puts_links_where_pinocchio_says(columns, run, row):
-    expected = placements(run, row)
+    expected = expected_frames(run, row)
     paths = sorted({path for path, _ in columns if path.startswith("/world/world/") and "shape" not in path})
     assert {path.rsplit("/", 1)[1] for path in paths} >= {"base_link", "arm_link_5", "ee"}
     for path in paths:
         parts = path.split("/")
         above = ["/".join(parts[:i]) for i in range(4, len(parts) + 1)]
-        placement = pinocchio.SE3.Identity()
+        world = pinocchio.SE3.Identity()
         for each in above:
             times, xyz = columns[(each, "Transform3D:translation")]
             _, xyzw = columns[(each, "Transform3D:quaternion")]
             at = 0 if times is None else row
-            placement = placement * se3(xyz[at], xyzw[at])
+            world = world * placement(xyz[at], xyzw[at])
         np.testing.assert_allclose(
-            placement.homogeneous, expected[parts[-1]].homogeneous, atol=1e-6, err_msg=path
+            world.homogeneous, expected[parts[-1]].homogeneous, atol=1e-6, err_msg=path
         )
 
 

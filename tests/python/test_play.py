@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 import pinocchio
 import pytest
+from kinematics import frames, placement
 from live_client import LiveClient, wait_for
 
 from tope import _core
@@ -55,8 +56,7 @@ def seen_end_effector(client):
     for end in range(3, len(parts) + 1):
         step = client.placements["/".join(parts[:end])]
         w, *xyz = step["wxyz"]
-        turned = pinocchio.Quaternion(np.array([*xyz, w], dtype=float))
-        world = world * pinocchio.SE3(turned, np.array(step["position"], dtype=float))
+        world = world * placement(step["position"], [*xyz, w])
     return world.translation
 
 
@@ -89,15 +89,8 @@ def test_what_clients_see_is_where_pinocchio_says_the_robot_is(page, session):
     client.set("Pause", True)
     wait_for(lambda: session.paused)
     time.sleep(0.3)
-    model = pinocchio.buildModelFromUrdf(str(ROOT / "robots/youbot/youbot.urdf"))
-    data = model.createData()
-    x, y, yaw, *arm = session.state().position
-    q = pinocchio.neutral(model)
-    q[:4] = x, y, np.cos(yaw), np.sin(yaw)
-    for i, angle in enumerate(arm, start=1):
-        q[model.joints[model.getJointId(f"arm_joint_{i}")].idx_q] = angle
-    pinocchio.framesForwardKinematics(model, data, q)
-    expected = data.oMf[model.getFrameId("ee")].translation
+    names = [joint["name"] for joint in session.scenario["joints"]]
+    expected = frames(dict(zip(names, session.state().position, strict=True)))["ee"].translation
     np.testing.assert_allclose(seen_end_effector(client), expected, atol=1e-6)
 
 

@@ -9,8 +9,8 @@ import io
 from pathlib import Path
 
 import numpy as np
-import pinocchio
 import pytest
+from kinematics import frames, placement
 from PIL import Image
 
 from tope.compare import compare
@@ -62,35 +62,16 @@ def report(folder):
     return (folder / "report.html").as_uri()
 
 
-def positions(run, t):
-    """q at a time of the log, in the order of the log's columns."""
-    row = int(np.argmin(np.abs(run.time - t)))
-    return [run.log[f"q.{joint['name']}"][row] for joint in run.scenario["joints"]]
-
-
-def link_placements(q):
-    """Where Pinocchio says the links are; the URDF's own model, with the gripper closed."""
-    model = pinocchio.buildModelFromUrdf(str(ROOT / "robots/youbot/youbot.urdf"))
-    data = model.createData()
-    full = pinocchio.neutral(model)
-    x, y, yaw, *arm = q
-    values = {"base_x": x, "base_y": y, **{f"arm_joint_{i}": angle for i, angle in enumerate(arm, start=1)}}
-    for name, value in values.items():
-        full[model.joints[model.getJointId(name)].idx_q] = value
-    start = model.joints[model.getJointId("base_yaw")].idx_q
-    full[start : start + 2] = np.cos(yaw), np.sin(yaw)
-    pinocchio.framesForwardKinematics(model, data, full)
-    return {link: data.oMf[model.getFrameId(link)] for link in LINKS}
-
-
 def check_links(page, run, t, number=0):
     page.run(f"tope.setTime({t})")
-    expected = link_placements(positions(run, t))
+    row = int(np.argmin(np.abs(run.time - t)))
+    names = [joint["name"] for joint in run.scenario["joints"]]
+    expected = frames({name: run.log[f"q.{name}"][row] for name in names})
     for link in LINKS:
         pose = page.run(f"tope.linkPose('{link}', {number})")
-        np.testing.assert_allclose(pose["position"], expected[link].translation, atol=1e-3, err_msg=link)
-        turned = pinocchio.Quaternion(np.array(pose["quaternion"], dtype=float)).matrix()  # x, y, z, w
-        np.testing.assert_allclose(turned, expected[link].rotation, atol=2e-3, err_msg=link)
+        found = placement(pose["position"], pose["quaternion"])
+        np.testing.assert_allclose(found.translation, expected[link].translation, atol=1e-3, err_msg=link)
+        np.testing.assert_allclose(found.rotation, expected[link].rotation, atol=2e-3, err_msg=link)
 
 
 @pytest.mark.parametrize("t", [0.0, 0.412, 0.9, 1.705, 3.0])
