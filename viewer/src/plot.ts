@@ -257,6 +257,7 @@ export class Plot {
     ctx.strokeStyle = palette.text;
     ctx.fillStyle = palette.text;
     ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
+    ctx.textAlign = "left";
     for (const [time, label] of this.panel.marks) {
       const x = u.valToPos(time, "x", true);
       ctx.setLineDash([4 * devicePixelRatio, 3 * devicePixelRatio]);
