@@ -18,9 +18,9 @@ class LiveObstacle:
         self,
         server: viser.ViserServer,
         obstacle: Mapping[str, Any],
-        change: Callable[[Mapping[str, Any]], None],
+        change: Callable[[Mapping[str, Any], LiveObstacle], None],
     ) -> None:
-        """Draw an obstacle of `scene.obstacles`; `change` replaces keys of the scenario."""
+        """Draw an obstacle of `scene.obstacles`; `change` replaces keys of the scenario for us."""
         self.joint, self.side = obstacle["joint"], obstacle["side"]
         self.axis = int(np.argmax(np.abs(obstacle["direction"])))
         self.offset = obstacle["limit"] - obstacle["xyz"][self.axis]
@@ -40,7 +40,7 @@ class LiveObstacle:
     def pushed(self, _: viser.TransformControlsEvent) -> None:
         """Move the limit to where the kerb is now."""
         limit = float(self.handle.position[self.axis]) + self.offset
-        self.change({f"limits.joints.{self.joint}.{self.side}": limit})
+        self.change({f"limits.joints.{self.joint}.{self.side}": limit}, self)
 
     def show(self, joints: Sequence[Mapping[str, Any]]) -> None:
         """Stand where the limit is, whoever moved it."""

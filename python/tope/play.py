@@ -13,6 +13,7 @@ import numpy as np
 import viser
 
 from tope import _core, words
+from tope.live_controls import LiveControls
 from tope.live_obstacle import LiveObstacle
 from tope.live_plots import LivePlots
 from tope.live_robot import LiveRobot
@@ -22,7 +23,6 @@ from tope.urdf import read_urdf
 
 FRAME_RATE = 30.0  # of the scene [1/s]
 PLOT_EVERY = 4  # frames between points of the plots
-WIDEST = 2.0  # slider of a limit that the robot itself hardly has [m, rad]
 CAMERA, LOOK_AT = (1.45, -1.25, 0.95), (0.3, 0.1, 0.15)  # [m]
 
 
@@ -42,7 +42,9 @@ class Page:
         self.robot = LiveRobot(self.server, self.tree, session.scenario)
         self.add_goals()
         self.kerbs = self.add_obstacles()
-        self.add_controls()
+        self.refused = ""  # why the last change did not do
+        self.told = self.server.gui.add_markdown("")
+        self.controls = LiveControls(self.server.gui, session, self.change)
         self.plots = LivePlots(self.server, session.scenario)
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._show, name="page", daemon=True)
@@ -82,98 +84,18 @@ class Page:
         found = obstacles(self.tree, self.session.scenario["joints"])
         return [LiveObstacle(self.server, each, self.change) for each in found]
 
-    def add_controls(self) -> None:
-        """The sliders and buttons."""
-        gui, scenario = self.server.gui, self.session.scenario
-        self.told = gui.add_markdown("")
-        self.add_run_buttons()
-        method = gui.add_dropdown("limits.method", _core.LIMIT_METHODS, initial_value=scenario["method"])
-        method.on_update(lambda _: self.change({"limits.method": method.value}))
-        self.add_slider("limits.buffer", 0.02, 0.3, scenario["joints"][0]["buffer"])
-        self.add_slider("limits.gain", 0.5, 20.0, scenario["limit_gain"])
-        with gui.add_folder("Tasks"):
-            for number, task in enumerate(scenario["tasks"]):
-                self.add_task(number, task)
-        with gui.add_folder("Limits", expand_by_default=False):
-            for joint in scenario["joints"]:
-                self.add_limits(joint)
-
-    def add_run_buttons(self) -> None:
-        """Pause and restart."""
-        pause = self.server.gui.add_checkbox("Pause", initial_value=False)
-
-        @pause.on_update
-        def _(_: Any) -> None:
-            self.session.paused = pause.value
-
-        self.server.gui.add_button("Restart").on_click(lambda _: self.session.restart())
-
-    def add_slider(self, key: str, low: float, high: float, value: float) -> None:
-        """A slider for a key of the scenario."""
-        low, high = min(low, value), max(high, value)
-        slider = self.server.gui.add_slider(
-            key, min=low, max=high, step=(high - low) / 500, initial_value=value
-        )
-        slider.on_update(lambda _: self.change({key: slider.value}))
-
-    def add_task(self, number: int, task: Mapping[str, Any]) -> None:
-        """A task's presence and its gain."""
-        label = f"{task['level']}. {task['name']}"
-        present = self.server.gui.add_checkbox(label, initial_value=True)
-        present.on_update(lambda _: self.session.show_task(task["name"], present.value))
-        if task["type"] == "damping":
-            return
-        due = task["goal_time"]
-        kind = "exponential" if due is None else f"predefined_time, duration: {due}"
-        slider = self.server.gui.add_slider(
-            f"gain of {task['name']}",
-            min=0.2,
-            max=max(20.0, task["gain"]),
-            step=0.1,
-            initial_value=task["gain"],
-        )
-        slider.on_update(
-            lambda _: self.change({f"tasks.{number}.reference": f"{{type: {kind}, gain: {slider.value}}}"})
-        )
-
-    def add_limits(self, joint: Mapping[str, Any]) -> None:
-        """A joint's limits, to pull in."""
-        name = joint["name"]
-        lower, upper = (
-            joint[side] if joint[side] is not None and abs(joint[side]) < 2 * np.pi else sign * WIDEST
-            for side, sign in (("lower", -1.0), ("upper", 1.0))
-        )
-        slider = self.server.gui.add_multi_slider(
-            f"{name} [{joint['unit']}]",
-            min=min(lower, -WIDEST),
-            max=max(upper, WIDEST),
-            step=0.001,
-            initial_value=(lower, upper),
-            min_range=4 * joint["buffer"],
-        )
-        before = [lower, upper]
-
-        @slider.on_update
-        def _(_: Any) -> None:
-            keys = [f"limits.joints.{name}.{side}" for side in ("lower", "upper")]
-            changed = {
-                key: now for key, now, was in zip(keys, slider.value, before, strict=True) if now != was
-            }
-            before[:] = slider.value
-            if changed:
-                self.change(changed)
-
-    def change(self, keys: Mapping[str, Any]) -> None:
-        """Change the scenario, or say why not."""
+    def change(self, keys: Mapping[str, Any], moved: LiveObstacle | None = None) -> None:
+        """Change the scenario, or say why not; what `moved` shows it already."""
         try:
             self.session.change(keys)
             self.refused = ""
         except _core.Error as error:
             self.refused = str(error)
+            self.controls.show(self.session.scenario)
+            moved = None  # it stands where it may not
         for kerb in self.kerbs:
-            kerb.show(self.session.scenario["joints"])
-
-    refused = ""  # why the last change did not do
+            if kerb is not moved:
+                kerb.show(self.session.scenario["joints"])
 
     def _show(self) -> None:
         frame = 0
