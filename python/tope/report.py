@@ -56,7 +56,7 @@ class View:
 def write_run_report(run: Run, path: Path) -> None:
     """Write the page of one run."""
     view = View({run.scenario["name"]: run}, compares=False)
-    write_page(path, view, rows=words.summary_rows(run.summary), saturated=saturation(run))
+    write_page(path, view, rows=words.summary_rows(run.summary))
 
 
 def write_comparison_report(runs: Mapping[str, Run], path: Path) -> None:
@@ -69,7 +69,6 @@ def write_page(
     path: Path,
     view: View,
     rows: Sequence[tuple[str, str]] = (),
-    saturated: Sequence[str] = (),
     table: Sequence[tuple[str, ...]] = (),
 ) -> None:
     """Fill in the template."""
@@ -92,7 +91,7 @@ def write_page(
         tiles=[] if view.compares else words.tiles(first.summary),
         rows=rows,
         distances=[] if view.compares else distances(first.summary),
-        saturated=saturated,
+        saturated={name: saturation(run) for name, run in view.runs.items()},
         header=words.COMPARISON_HEADER,
         table=table,
         table_note=words.COMPARISON_NOTE,

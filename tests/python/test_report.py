@@ -149,6 +149,14 @@ def test_ten_seconds_at_a_kilohertz_stay_small_and_quick(tmp_path):
     assert path.stat().st_size < 2e6
 
 
+def test_a_comparison_of_all_methods_stays_small_and_quick(tmp_path):
+    runs = {method: make_run(method=method) for method in _core.LIMIT_METHODS}
+    start = time.perf_counter()
+    write_comparison_report(runs, tmp_path / "report.html")
+    assert time.perf_counter() - start < 3.0
+    assert (tmp_path / "report.html").stat().st_size < 6e6
+
+
 @pytest.mark.parametrize("name", ["page", "comparison"])
 def test_page_asks_for_nothing_from_outside(name, request):
     page = request.getfixturevalue(name)
@@ -165,6 +173,20 @@ def test_outcome_is_said_in_words(page):
         "0.4 % of the bound",
     ):
         assert sentence in page
+
+
+def test_what_was_saturated_is_said_of_every_run(page, comparison):
+    sentence = "The upper limit of base_x acted from 4 s to the end, by up to 100 %."
+    assert page.count(sentence) == 1
+    assert comparison.count(sentence) == 3
+
+
+def test_a_run_without_saturation_says_so(tmp_path):
+    run = make_run(rows=11)
+    run.log["xi.base_x.upper"][:] = 0.0
+    run.log["status"][:] = "ok"
+    write_run_report(run, tmp_path / "report.html")
+    assert "Nothing: no limit acted" in (tmp_path / "report.html").read_text(encoding="utf-8")
 
 
 def test_every_limited_joint_is_drawn_with_limits_and_buffers(page):
@@ -318,6 +340,19 @@ def test_words_for_a_crossed_limit_and_for_a_goal_that_was_missed():
     assert words.goal(told) == "stopped early, after 10001 cycles"
     told["max_limit_violation"] = {"overall": None}
     assert words.limits(told) == "no joint has one"
+
+
+def test_tiles_say_the_outcome_at_a_glance():
+    told = summary(scenario())
+    assert [figure for _, figure, _ in words.tiles(told)] == ["reached in 4.9 s", "kept", "0.4 %", "10 µs"]
+    told["time_to_goal"] = None
+    told["max_limit_violation"] = {"arm_joint_5": 0.01, "overall": 0.01}
+    told["max_command_jump"] = {"overall": None}
+    assert words.tiles(told)[0][1] == "not reached"
+    assert words.tiles(told)[1] == ("Limits", "crossed", "by 0.01 rad, arm_joint_5")
+    assert words.tiles(told)[2][1:] == ("–", "no cycle")
+    told["max_limit_violation"] = {"overall": None}
+    assert words.tiles(told)[1][1:] == ("none", "no joint has one")
 
 
 def test_json_has_no_numbers_that_json_does_not_know():
