@@ -69,7 +69,7 @@ def live_page(browser: Browser) -> bytes:
     picture = tab.picture()
     tab.close()
     live.close()
-    session.stop()
+    session.close()
     return picture
 
 

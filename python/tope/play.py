@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import contextlib
 import io
 import socket
 import threading
 from collections.abc import Callable, Mapping
+from contextlib import closing, redirect_stdout, suppress
 from typing import Any
 
 import numpy as np
@@ -33,12 +33,12 @@ class Page:
         """Errors: Error if the address cannot be served."""
         require_free(host, port)
         self.session = session
-        with contextlib.redirect_stdout(io.StringIO()):  # viser prints a banner, whatever it is told
+        self.tree = read_urdf(session.scenario["robot"]["urdf"])
+        with redirect_stdout(io.StringIO()):  # viser prints a banner, whatever it is told
             self.server = viser.ViserServer(host=host, port=port, label="tope", verbose=False)
         self.server.initial_camera.position = CAMERA
         self.server.initial_camera.look_at = LOOK_AT
         self.server.gui.configure_theme(show_share_button=False, show_logo=False, control_width="large")
-        self.tree = read_urdf(session.scenario["robot"]["urdf"])
         self.robot = LiveRobot(self.server, self.tree, session.scenario)
         self.add_goals()
         self.kerbs = self.add_obstacles()
@@ -111,7 +111,7 @@ class Page:
 
 def require_free(host: str, port: int) -> None:
     """Raise Error unless the address can be served; viser itself would take another port in silence."""
-    with contextlib.closing(socket.socket()) as probe:
+    with closing(socket.socket()) as probe:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             probe.bind((host, port))
@@ -139,14 +139,7 @@ def play(
     scenario: str, overrides: Mapping[str, str], *, host: str, port: int, ready: Callable[[str], None]
 ) -> None:
     """Serve a scenario until interrupted; `ready` is called with the page's address."""
-    require_free(host, port)
-    session = Session(scenario, overrides)
-    page = Page(session, host, port)
-    ready(page.address)
-    try:
-        threading.Event().wait()
-    except KeyboardInterrupt:
-        pass
-    finally:
-        page.close()
-        session.stop()
+    with closing(Session(scenario, overrides)) as session, closing(Page(session, host, port)) as page:
+        ready(page.address)
+        with suppress(KeyboardInterrupt):
+            threading.Event().wait()

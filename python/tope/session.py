@@ -114,7 +114,7 @@ class Session:
                     fresh.remove(task, over=0.0)
                 self._live = fresh
 
-    def stop(self) -> None:
+    def close(self) -> None:
         """End the simulation's thread."""
         self._stop.set()
         self._thread.join()

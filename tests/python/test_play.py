@@ -34,7 +34,7 @@ NEAR, FAR = [0.45, 0.05, 0.15], [0.55, -0.05, 0.12]  # goals within reach [m]
 def session():
     running = Session(VELOCITY, {})
     yield running
-    running.stop()
+    running.close()
 
 
 @pytest.fixture
@@ -197,7 +197,7 @@ def test_torque_mode_follows_too():
         wait_for(lambda: session.state().errors["position"] < 0.01, seconds=15)
         assert np.abs(session.state().command).max() > 0.1  # it carries itself
     finally:
-        session.stop()
+        session.close()
 
 
 def test_a_port_in_use_is_one_line(tmp_path):
