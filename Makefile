@@ -45,7 +45,7 @@ $(CHROMIUM): viewer/package.json viewer/package-lock.json viewer/unpack_chromium
 	touch $@
 
 demo: build
-	$(BIN)/tope run scenarios/youbot_velocity.yaml --out runs/demo
+	$(BIN)/tope run scenarios/youbot_torque.yaml --out runs/demo
 
 test:
 	$(MAKE) build viewer-tests TESTS=ON
@@ -60,12 +60,18 @@ test-python: viewer-tests
 examples:
 	@for example in examples/*.py; do echo $$example; $(BIN)/python $$example || exit 1; done
 
-# Two hundred goals, many out of reach, and a thousand random runs: figures of the README. Minutes.
-.PHONY: campaign-goals campaign-limits
+# Random goals, many out of reach, random runs and wrong models: figures of the README. Minutes each.
+.PHONY: campaign-goals campaign-limits campaign-torque-goals campaign-torque-limits campaign-robustness
 campaign-goals: build
 	$(BIN)/python bench/goals.py
 campaign-limits: build
 	$(BIN)/python bench/random_limits.py
+campaign-torque-goals: build
+	$(BIN)/python bench/torque_goals.py
+campaign-torque-limits: build
+	$(BIN)/python bench/random_limits.py --mode torque
+campaign-robustness: build
+	$(BIN)/python bench/robustness.py
 
 # The pictures of docs/, from real runs in a real browser.
 .PHONY: pictures

@@ -4,6 +4,7 @@
 #include <tope/common/error.hpp>
 #include <tope/common/names.hpp>
 #include <tope/controller/controller.hpp>
+#include <tope/limit/servo_gains.hpp>
 
 #include <algorithm>
 
@@ -21,23 +22,40 @@ std::size_t choice(const std::string& what, const std::string& value, const std:
   return static_cast<std::size_t>(found - names.begin());
 }
 
+using OptionalNumber = std::optional<double>;
+
+/// The poles that both pairs of arguments stand for; `lambda_p` and `lambda_v` are the paper's.
+void set_servo(JointLimitOptions& rows, OptionalNumber gain, OptionalNumber servo_gain,
+               OptionalNumber lambda_p, OptionalNumber lambda_v) {
+  rows.gain = gain;
+  rows.servo_gain = servo_gain.value_or(rows.servo_gain);
+  if (!lambda_p && !lambda_v) {
+    return;
+  }
+  if (gain || servo_gain || !lambda_p || !lambda_v) {
+    throw ConfigError(
+        "limits: give gain and servo_gain, or lambda_p and lambda_v, whose poles they are: one complete "
+        "pair");
+  }
+  const ServoGains gains = ServoGains::from_paper(*lambda_p, *lambda_v);
+  rows.gain = gains.gain;
+  rows.servo_gain = gains.servo_gain;
+}
+
 void bind_options(nb::module_& module) {
-  using UnilateralOptions = Unilateral::Options;
   nb::class_<UnilateralOptions>(module, "UnilateralOptions", "Parameters of the method `unilateral`.")
       .def(
           "__init__",
-          [](UnilateralOptions* self, double damping, double fine_damping, double fine_below, double lock,
-             double headroom) {
+          [](UnilateralOptions* self, OptionalNumber damping, OptionalNumber fine_damping,
+             OptionalNumber fine_below, OptionalNumber lock, OptionalNumber headroom) {
             new (self) UnilateralOptions{.damping = damping,
                                          .fine_damping = fine_damping,
                                          .fine_below = fine_below,
                                          .lock = lock,
                                          .headroom = headroom};
           },
-          nb::kw_only(), "damping"_a = UnilateralOptions{}.damping,
-          "fine_damping"_a = UnilateralOptions{}.fine_damping,
-          "fine_below"_a = UnilateralOptions{}.fine_below, "lock"_a = UnilateralOptions{}.lock,
-          "headroom"_a = UnilateralOptions{}.headroom);
+          nb::kw_only(), "damping"_a = nb::none(), "fine_damping"_a = nb::none(), "fine_below"_a = nb::none(),
+          "lock"_a = nb::none(), "headroom"_a = nb::none(), "What is None is chosen for the mode.");
   nb::class_<PotentialFieldOptions>(module, "PotentialFieldOptions",
                                     "Parameters of the method `potential_field`.")
       .def(
@@ -51,30 +69,31 @@ void bind_options(nb::module_& module) {
   nb::class_<LimitOptions>(module, "LimitOptions", "How joint limits are met.")
       .def(
           "__init__",
-          [](LimitOptions* self, const std::string& method, double buffer, double gain, double margin,
-             const std::string& ramp, const std::map<std::string, double>& buffers, double servo_gain,
-             const std::string& measure, const UnilateralOptions& unilateral,
-             const PotentialFieldOptions& potential_field, bool enforce_conditions) {
+          [](LimitOptions* self, const std::string& method, double buffer, OptionalNumber gain, double margin,
+             const std::string& ramp, const std::map<std::string, double>& buffers, OptionalNumber servo_gain,
+             OptionalNumber lambda_p, OptionalNumber lambda_v, const std::string& measure,
+             const UnilateralOptions& unilateral, const PotentialFieldOptions& potential_field,
+             bool enforce_conditions) {
             new (self) LimitOptions{
                 .method = limit_method_from(method),
                 .rows = {.buffer = buffer,
                          .buffers = buffers,
-                         .gain = gain,
                          .ramp = static_cast<Ramp>(choice("ramp", ramp, {"raised_cosine", "quintic"})),
-                         .servo_gain = servo_gain,
                          .measure =
                              static_cast<Measure>(choice("measure", measure, {"predicted", "position"})),
                          .margin = margin},
                 .unilateral = unilateral,
                 .potential_field = potential_field,
                 .enforce_conditions = enforce_conditions};
+            set_servo(self->rows, gain, servo_gain, lambda_p, lambda_v);
           },
           nb::kw_only(), "method"_a = to_string(LimitOptions{}.method),
-          "buffer"_a = JointLimitOptions{}.buffer, "gain"_a = JointLimitOptions{}.gain,
+          "buffer"_a = JointLimitOptions{}.buffer, "gain"_a = nb::none(),
           "margin"_a = JointLimitOptions{}.margin, "ramp"_a = "raised_cosine",
-          "buffers"_a = std::map<std::string, double>{}, "servo_gain"_a = JointLimitOptions{}.servo_gain,
-          "measure"_a = "predicted", "unilateral"_a = UnilateralOptions{},
-          "potential_field"_a = PotentialFieldOptions{}, "enforce_conditions"_a = true);
+          "buffers"_a = std::map<std::string, double>{}, "servo_gain"_a = nb::none(),
+          "lambda_p"_a = nb::none(), "lambda_v"_a = nb::none(), "measure"_a = "predicted",
+          "unilateral"_a = UnilateralOptions{}, "potential_field"_a = PotentialFieldOptions{},
+          "enforce_conditions"_a = true);
 }
 
 void bind_status(nb::module_& module) {
@@ -166,6 +185,9 @@ void bind_controller(nb::module_& module) {
           },
           "handle"_a, "Error of a task as of the last update.")
       .def_prop_ro("status", &Controller::status)
+      .def_prop_ro(
+          "limit_gain", [](const Controller& controller) { return controller.limits().gain(); },
+          "Gain of the limits [1/s]: as given, or as chosen for the mode and the drives.")
       .def_prop_ro(
           "status_text",
           [](const Controller& controller) { return describe(controller.status(), controller.robot()); })

@@ -70,7 +70,6 @@ nb::dict describe_scenario(const Scenario& scenario) {
   entry["file"] = scenario.file.string();
   entry["mode"] = scenario.controller.mode == Mode::torque ? "torque" : "velocity";
   entry["method"] = to_string(scenario.controller.limits.method);
-  entry["limit_gain"] = scenario.controller.limits.rows.gain;
   entry["dt"] = scenario.controller.dt;
   entry["duration"] = scenario.duration;
   entry["robot"] = describe_robot(scenario);
@@ -175,6 +174,16 @@ void bind_simulation(nb::module_& module) {
   module.attr("LIMIT_METHODS") = nb::tuple(nb::cast(limit_method_names()));
   nb::class_<Scenario>(module, "Scenario", "A complete experiment as a YAML file tells it.")
       .def("describe", &describe_scenario)
+      .def(
+          "controller",
+          [](const Scenario& scenario) {
+            auto controller = std::make_unique<Controller>(*scenario.robot, scenario.controller);
+            for (const ScenarioTask& task : scenario.tasks) {
+              controller->add(task.level, *task.task);
+            }
+            return controller.release();
+          },
+          nb::rv_policy::take_ownership, "A controller as the scenario describes it, with its tasks.")
       .def_prop_ro("initial", [](const Scenario& scenario) -> Vector { return scenario.initial; });
   module.def("load_scenario", &Scenario::load, "path"_a,
              "overrides"_a = std::map<std::string, std::string>{});

@@ -105,10 +105,13 @@ void bind_references(nb::module_& module) {
   nb::class_<PredefinedTime>(module, "PredefinedTime", "Convergence at a stated time after the first update.")
       .def(
           "__init__",
-          [](PredefinedTime* self, double duration, double gain) {
-            new (self) PredefinedTime(PredefinedTime::Options{.duration = duration, .gain = gain});
+          [](PredefinedTime* self, double duration, double gain, double replan_over) {
+            new (self) PredefinedTime(
+                PredefinedTime::Options{.duration = duration, .gain = gain, .replan_over = replan_over});
           },
-          "duration"_a, nb::kw_only(), "gain"_a = PredefinedTime::Options{}.gain);
+          "duration"_a, nb::kw_only(), "gain"_a = PredefinedTime::Options{}.gain, "replan_over"_a = 0.0,
+          "`replan_over` [s]: least time of the plan made anew after something held the task back; 0: none "
+          "is made.");
 }
 
 }  // namespace

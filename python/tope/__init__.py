@@ -16,6 +16,7 @@ from tope._core import (
     PotentialFieldOptions,
     PredefinedTime,
     Robot,
+    Scenario,
     Status,
     Task,
     TaskHandle,
@@ -24,7 +25,7 @@ from tope._core import (
 from tope.compare import compare
 from tope.export import export
 from tope.runs import Run
-from tope.simulation import load_run, simulate
+from tope.simulation import load_run, load_scenario, simulate
 
 __version__ = "0.1.0"
 
@@ -45,6 +46,7 @@ __all__ = [
     "PredefinedTime",
     "Robot",
     "Run",
+    "Scenario",
     "Status",
     "Task",
     "TaskHandle",
@@ -52,5 +54,6 @@ __all__ = [
     "compare",
     "export",
     "load_run",
+    "load_scenario",
     "simulate",
 ]

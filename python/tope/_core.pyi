@@ -71,7 +71,10 @@ class Exponential:
 class PredefinedTime:
     """Convergence at a stated time after the first update."""
 
-    def __init__(self, duration: float, *, gain: float = 2.0) -> None: ...
+    def __init__(self, duration: float, *, gain: float = 2.0, replan_over: float = 0.0) -> None:
+        """
+        `replan_over` [s]: least time of the plan made anew after something held the task back; 0: none is made.
+        """
 
 class Task:
     """A goal; a controller makes it its own."""
@@ -103,7 +106,8 @@ def Damping() -> Task:
 class UnilateralOptions:
     """Parameters of the method `unilateral`."""
 
-    def __init__(self, *, damping: float = 0.05, fine_damping: float = 0.02, fine_below: float = 0.05, lock: float = 0.1, headroom: float = 0.01) -> None: ...
+    def __init__(self, *, damping: float | None = None, fine_damping: float | None = None, fine_below: float | None = None, lock: float | None = None, headroom: float | None = None) -> None:
+        """What is None is chosen for the mode."""
 
 class PotentialFieldOptions:
     """Parameters of the method `potential_field`."""
@@ -113,7 +117,7 @@ class PotentialFieldOptions:
 class LimitOptions:
     """How joint limits are met."""
 
-    def __init__(self, *, method: str = 'unilateral', buffer: float = 0.1, gain: float = 10.0, margin: float = 0.001, ramp: str = 'raised_cosine', buffers: Mapping[str, float] = {}, servo_gain: float = 20.0, measure: str = 'predicted', unilateral: UnilateralOptions = ..., potential_field: PotentialFieldOptions = ..., enforce_conditions: bool = True) -> None: ...
+    def __init__(self, *, method: str = 'unilateral', buffer: float = 0.1, gain: float | None = None, margin: float = 0.001, ramp: str = 'raised_cosine', buffers: Mapping[str, float] = {}, servo_gain: float | None = None, lambda_p: float | None = None, lambda_v: float | None = None, measure: str = 'predicted', unilateral: UnilateralOptions = ..., potential_field: PotentialFieldOptions = ..., enforce_conditions: bool = True) -> None: ...
 
 class Status:
     """What acted in one cycle."""
@@ -157,6 +161,12 @@ class Controller:
     def status(self) -> Status: ...
 
     @property
+    def limit_gain(self) -> float:
+        """
+        Gain of the limits [1/s]: as given, or as chosen for the mode and the drives.
+        """
+
+    @property
     def status_text(self) -> str: ...
 
     @property
@@ -169,6 +179,9 @@ class Scenario:
     """A complete experiment as a YAML file tells it."""
 
     def describe(self) -> dict: ...
+
+    def controller(self) -> Controller:
+        """A controller as the scenario describes it, with its tasks."""
 
     @property
     def initial(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]: ...

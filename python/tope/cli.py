@@ -250,9 +250,9 @@ def print_inequalities(console: Console, inequalities: Sequence[dict[str, Any]])
         numbers = (words.number(each[key]) for key in ("value", "bound", "margin"))
         table.add_row(*map(Text, (each["name"], each["joint"], each["expression"], *numbers)), verdict)
     console.print(table)
-    for advice in dict.fromkeys(each["advice"] for each in inequalities if each["advice"]):
-        joints = [each["joint"] for each in inequalities if each["advice"] == advice]
-        console.print(Text(f"{', '.join(joints)}: {advice}"))
+    for each in inequalities:
+        if not each["ok"]:
+            console.print(Text(f"{each['joint'] or each['name']}: {each['advice']}"))
 
 
 if __name__ == "__main__":

@@ -83,15 +83,15 @@ class LiveControls:
         present.on_update(lambda _: self.session.show_task(task["name"], present.value))
         if task["type"] == "damping":
             return
-        due = task["goal_time"]
-        kind = "exponential" if due is None else f"predefined_time, duration: {due}"
+        key = f"tasks.{number}.reference"
+        kind = "exponential" if task["goal_time"] is None else "predefined_time"  # the file need not say it
         high = max(20.0, task["gain"])
         slider = self.gui.add_slider(
             f"gain of {task['name']}", min=0.2, max=high, step=0.1, initial_value=task["gain"]
         )
         self.bind(
             slider,
-            lambda: {f"tasks.{number}.reference": f"{{type: {kind}, gain: {slider.value}}}"},
+            lambda: {f"{key}.type": kind, f"{key}.gain": slider.value},
             lambda now: now["tasks"][number]["gain"],
         )
 

@@ -41,6 +41,11 @@ class State:
     lost: float
 
 
+def described(loaded: _core.Scenario, live: _core.LiveSimulation) -> dict[str, Any]:
+    """A scenario's description, with the gain that its limits are kept with."""
+    return {**loaded.describe(), "limit_gain": live.limit_gain}
+
+
 class Session:
     """A live simulation on a thread of its own. Every method may be called from any thread."""
 
@@ -49,9 +54,9 @@ class Session:
         self.file = os.fspath(scenario)
         self.overrides = dict(overrides)
         loaded = _core.load_scenario(self.file, self.overrides)
-        self.scenario: dict[str, Any] = loaded.describe()
         self.paused = False
         self._live = _core.LiveSimulation(loaded)
+        self.scenario = described(loaded, self._live)
         self._absent: set[str] = set()
         self._lost = 0.0
         self._lock = threading.Lock()  # held while the simulation is used or replaced
@@ -90,8 +95,8 @@ class Session:
             loaded = _core.load_scenario(self.file, overrides)
             with self._lock:
                 self._live.adopt(loaded)
+                self.scenario = described(loaded, self._live)
             self.overrides = overrides
-            self.scenario = loaded.describe()
 
     def show_task(self, task: str, present: bool) -> None:
         """Let a task enter or leave smoothly."""

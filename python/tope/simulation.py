@@ -14,7 +14,7 @@ from tope import _core
 from tope.report import write_run_report
 from tope.runs import Log, Run, Summary, finite, write_json
 
-__all__ = ["Run", "load_run", "simulate"]
+__all__ = ["Run", "load_run", "load_scenario", "simulate"]
 
 Progress = Callable[[float], None]
 
@@ -33,7 +33,7 @@ def simulate(
     with the fraction done. With `out`, log.csv, report.html (unless `report` is False) and summary.json are
     written to that folder, the summary last: a folder without one holds an unfinished run.
     """
-    loaded = _core.load_scenario(os.fspath(scenario), as_text(overrides or {}))
+    loaded = load_scenario(scenario, overrides)
     folder = None if out is None else fresh_folder(out)
     result = _core.simulate(loaded, None if folder is None else str(folder), progress, True)
     run = Run(finite(result["summary"]), log_of(result), folder, np.array(result["cycle_time_us"]))
@@ -42,6 +42,13 @@ def simulate(
             write_run_report(run, folder / "report.html")
         write_json(folder / "summary.json", run.summary)
     return run
+
+
+def load_scenario(
+    scenario: str | os.PathLike[str], overrides: Mapping[str, Any] | None = None
+) -> _core.Scenario:
+    """Read a scenario file, with keys replaced as `simulate` does."""
+    return _core.load_scenario(os.fspath(scenario), as_text(overrides or {}))
 
 
 def load_run(folder: str | os.PathLike[str]) -> Run:

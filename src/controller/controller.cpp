@@ -2,6 +2,7 @@
 #include <tope/controller/controller.hpp>
 #include <tope/law/command_bounds.hpp>
 #include <tope/law/smooth_step.hpp>
+#include <tope/robot/braking_authority.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -53,13 +54,37 @@ double require_period(double dt) {
   return dt;
 }
 
+/// The envelope of torque mode starts from the speed limit of each limited joint.
+void require_speed_limits(const Robot& robot, const JointLimits& limits) {
+  for (int j = 0; j < robot.nv(); ++j) {
+    if (limits.limited(j) && !std::isfinite(robot.velocity_limit()[j])) {
+      throw ConfigError(
+          "velocity_limit: " + robot.joint_names()[static_cast<std::size_t>(j)] +
+          " has position limits but no speed limit: torque mode cannot tell how hard it must brake; "
+          "set one");
+    }
+  }
+}
+
+/// A gain that is left open becomes what the drives can brake with.
+JointLimitOptions with_gain(const Robot& robot, const ControllerOptions& options, const Vector& authority) {
+  JointLimitOptions rows = options.limits.rows;
+  if (options.mode == Mode::torque && !rows.gain) {
+    const JointLimits limits(robot, rows);
+    require_speed_limits(robot, limits);
+    rows.gain = braking_gain(limits, options.limits.method, authority);
+  }
+  return rows;
+}
+
 }  // namespace
 
 Controller::Controller(const Robot& robot, const ControllerOptions& options)
     : robot_(robot),
       options_(options),
       terms_(robot_),
-      limits_(robot_, options_.limits.rows),
+      authority_(torque_mode() ? braking_authority(robot_) : Vector()),
+      limits_(robot_, with_gain(robot_, options_, authority_)),
       whitening_(torque_mode() ? Whitening::torque(robot_.nv())
                                : Whitening::velocity(command_weight(robot_, options_.joint_weights))),
       stack_(robot_.nv()),
@@ -79,6 +104,9 @@ Controller::Controller(const Robot& robot, const ControllerOptions& options)
   if (torque_mode() && !options_.joint_weights.empty()) {
     throw ConfigError("joint_weights: torque mode weighs joints by the mass matrix; leave them out");
   }
+  if (torque_mode()) {
+    require_speed_limits(robot_, limits_);
+  }
   if (options_.limits.method == LimitMethod::potential_field) {
     field_.emplace(robot_, options_.limits.potential_field);
   }
@@ -89,8 +117,10 @@ Controller::Controller(const Robot& robot, const ControllerOptions& options)
 }
 
 std::vector<Condition> Controller::conditions() const {
-  const auto list = torque_mode() ? torque_conditions : velocity_conditions;
-  return list(robot_, limits_, options_.limits.method, options_.limits.unilateral.headroom, options_.dt);
+  const LimitMethod method = options_.limits.method;
+  const double headroom = options_.limits.unilateral.resolved(options_.mode).headroom;
+  return torque_mode() ? torque_conditions(robot_, limits_, method, headroom, options_.dt, authority_)
+                       : velocity_conditions(robot_, limits_, method, headroom, options_.dt);
 }
 
 TaskHandle Controller::add(int level, const Task& task, const TransitionOptions& options) {
@@ -154,7 +184,7 @@ double Controller::activation(TaskHandle handle) const { return entry(handle).ac
 LawOptions Controller::law_options() const {
   return {.method = options_.limits.method,
           .hierarchy = options_.singularities,
-          .unilateral = options_.limits.unilateral};
+          .unilateral = options_.limits.unilateral.resolved(options_.mode)};
 }
 
 /// Lays out the stack for the present entries and reserves the law's memory.
@@ -217,6 +247,7 @@ const Status& Controller::update(const VectorArg& q, const VectorArg& v, double 
   }
   law_.solve(stack_, solution_);
   report(torque_mode() ? bound_torque() : bound_velocity());
+  observe_tasks();
   u = command_;
   return status_;
 }
@@ -270,6 +301,19 @@ void Controller::fill_tasks(double t) {
     whitening_.rows(e.task->jacobian(), rows.a);
     if (e.task->near_flip()) {
       status_.add(Event::near_flip);
+    }
+  }
+}
+
+/// Tasks that promise a time learn what became of their wish.
+void Controller::observe_tasks() {
+  for (Entry& e : entries_) {
+    if (e.activation < 1.0 || !e.task->duration()) {
+      continue;
+    }
+    e.task->observe(motion_);
+    if (e.task->held()) {
+      status_.add(Event::held);
     }
   }
 }

@@ -29,6 +29,10 @@ std::string sentence(Event event, const Status& status, const Robot& robot) {
     case Event::beyond:
       text << joint_name(robot, status.beyond_joint) << " is beyond its limit and is led back.";
       break;
+    case Event::held:
+      text << "A limit, a bound or a higher level holds back a task with a predefined time, which does not "
+              "hold.";
+      break;
     case Event::near_flip:
       text << "An orientation error is within 0.05 rad of pi, where its direction flips.";
       break;
@@ -46,7 +50,7 @@ std::string sentence(Event event, const Status& status, const Robot& robot) {
 
 std::string_view to_string(Event event) {
   constexpr std::array<std::string_view, all_events.size()> names{
-      "limit", "scaled", "clipped", "singular", "beyond", "near_flip", "cut_off", "bad_input"};
+      "limit", "scaled", "clipped", "singular", "beyond", "held", "near_flip", "cut_off", "bad_input"};
   return names[static_cast<std::size_t>(event)];
 }
 

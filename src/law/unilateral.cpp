@@ -1,7 +1,6 @@
 #include "../common/require_positive.hpp"
 
 #include <tope/common/error.hpp>
-#include <tope/law/smooth_step.hpp>
 #include <tope/law/unilateral.hpp>
 
 #include <Eigen/Cholesky>
@@ -136,11 +135,10 @@ void Unilateral::lock_gradually() {
   task = turned_task_.topRows(m);  // rows sigma v^T
   open_task.noalias() = open_ * task.transpose();
   for (Eigen::Index i = 0; i < m; ++i) {
-    // (1 - sqrt(1 - s(x))) / sigma^2 with x = sigma / lock, written so that it stays finite at sigma = 0
+    // s(x) / sigma^2 with x = sigma / lock, written so that it stays finite at sigma = 0
     const double x = std::sqrt(std::max(0.0, eigen.eigenvalues()[i])) / options_.lock;
-    const double locked = smooth_step(x);
-    const double quotient = x < 1.0 ? 3.0 - 2.0 * x : 1.0 / (x * x);
-    open_task.col(i) *= quotient / (options_.lock * options_.lock * (1.0 + std::sqrt(1.0 - locked)));
+    const double quotient = x < 1.0 ? x * (10.0 + x * (6.0 * x - 15.0)) : 1.0 / (x * x);
+    open_task.col(i) *= quotient / (options_.lock * options_.lock);
   }
   open_.noalias() -= open_task * task;
 }

@@ -14,14 +14,14 @@ std::string text(const Parts&... parts) {
   return stream.str();
 }
 
-Condition servo_is_stable(const JointLimitOptions& options, double dt) {
+Condition servo_is_stable(const JointLimits& limits, double dt) {
   return {.name = "limit servo within one period",
           .joint = "",
           .expression = "dt * gain <= 1",
-          .value = dt * options.gain,
+          .value = dt * limits.gain(),
           .bound = 1.0,
           .advice = text("lower limits.gain to at most ", 1.0 / dt, " 1/s or dt to at most ",
-                         1.0 / options.gain, " s")};
+                         1.0 / limits.gain(), " s")};
 }
 
 /// A joint at full speed must not cross its buffer between two samples; kappa is the ramp's steepness.
@@ -41,9 +41,8 @@ Condition buffer_is_wide(const Robot& robot, const JointLimits& limits, int join
 /// The tightened bounds of the unilateral law must leave an interior.
 Condition headroom_fits(const Robot& robot, const JointLimits& limits, int joint, double headroom) {
   const std::string& name = robot.joint_names()[static_cast<std::size_t>(joint)];
-  const JointLimitOptions& options = limits.options();
-  const double range = limits.upper()[joint] - limits.lower()[joint] - 2.0 * options.margin;
-  const double width = std::min(options.gain * range, 0.5 * limits.velocity_limit()[joint]);
+  const double range = limits.upper()[joint] - limits.lower()[joint] - 2.0 * limits.options().margin;
+  const double width = std::min(limits.gain() * range, 0.5 * limits.velocity_limit()[joint]);
   return {.name = "headroom inside the bounds",
           .joint = name,
           .expression = "2 * headroom <= min(gain * (range - 2 margin), v_max / 2)",
@@ -52,12 +51,12 @@ Condition headroom_fits(const Robot& robot, const JointLimits& limits, int joint
           .advice = text("lower limits.unilateral.headroom to at most ", 0.5 * width)};
 }
 
-Condition second_order_servo_is_stable(const JointLimitOptions& options, double dt) {
-  const double c = 1.0 + 0.5 * options.gain * dt;
+Condition second_order_servo_is_stable(const JointLimits& limits, double dt) {
+  const double c = 1.0 + 0.5 * limits.gain() * dt;
   return {.name = "limit servo within one period",
           .joint = "",
           .expression = "dt * (1 + gain dt / 2) * servo_gain <= 1",
-          .value = dt * c * options.servo_gain,
+          .value = dt * c * limits.options().servo_gain,
           .bound = 1.0,
           .advice = text("lower limits.servo_gain to at most ", 1.0 / (c * dt), " 1/s")};
 }
@@ -66,7 +65,7 @@ Condition second_order_servo_is_stable(const JointLimitOptions& options, double 
 Condition rows_apart(const Robot& robot, const JointLimits& limits, int joint) {
   const std::string& name = robot.joint_names()[static_cast<std::size_t>(joint)];
   const double speed = limits.velocity_limit()[joint];
-  const double gain = limits.options().gain;
+  const double gain = limits.gain();
   return {.name = "rows idle at rest",
           .joint = name,
           .expression = "gain * buffer <= 0.9 v_max",
@@ -82,12 +81,13 @@ Condition second_order_buffer_is_wide(const Robot& robot, const JointLimits& lim
   const std::string& name = robot.joint_names()[static_cast<std::size_t>(joint)];
   const JointLimitOptions& options = limits.options();
   const double kappa = ramp_slope_factor(options.ramp);
-  const double c = 1.0 + 0.5 * options.gain * dt;
+  const double gain = limits.gain();
+  const double c = 1.0 + 0.5 * gain * dt;
   const double speed = limits.velocity_limit()[joint];
   const double buffer = limits.buffer(joint);
-  const double acceleration = options.gain * (speed + options.servo_gain * buffer);
-  const double shrink = 1.0 - 0.5 * options.gain * options.gain * dt * dt;
-  const double needed = kappa * dt * (speed + c * acceleration / options.gain);
+  const double acceleration = gain * (speed + options.servo_gain * buffer);
+  const double shrink = 1.0 - 0.5 * gain * gain * dt * dt;
+  const double needed = kappa * dt * (speed + c * acceleration / gain);
   return {
       .name = "buffer wide enough for the period",
       .joint = name,
@@ -112,7 +112,45 @@ Condition second_order_headroom_fits(const Robot& robot, const JointLimits& limi
           .advice = text("lower limits.unilateral.headroom to at most ", 0.5 * width)};
 }
 
+/// What a limit row asks of a joint's drive, over the gain: the speed lost per 1 / gain.
+double braking_speed(const JointLimits& limits, LimitMethod method, int joint) {
+  const double by_row =
+      method == LimitMethod::unilateral ? 0.0 : limits.options().servo_gain * limits.buffer(joint);
+  return limits.velocity_limit()[joint] + by_row;
+}
+
+Condition drive_can_brake(const Robot& robot, const JointLimits& limits, LimitMethod method, int joint,
+                          double authority) {
+  const std::string& name = robot.joint_names()[static_cast<std::size_t>(joint)];
+  const double speed = braking_speed(limits, method, joint);
+  const bool rows = method != LimitMethod::unilateral;
+  return {.name = "drive strong enough to brake",
+          .joint = name,
+          .expression = std::string(rows ? "gain * (v_max + servo_gain * buffer)" : "gain * v_max") +
+                        " <= (effort - |gravity|) / inertia in the worst pose",
+          .value = limits.gain() * speed,
+          .bound = authority,
+          .advice =
+              authority > 0.0
+                  ? text("lower limits.gain to at most ", authority / speed, " 1/s",
+                         rows ? ", or limits.servo_gain, or the buffer" : "", " or the speed limit of ", name)
+                  : text("in some pose the drive of ", name,
+                         " cannot hold the robot against gravity; raise its effort limit or narrow the "
+                         "position limits")};
+}
+
 }  // namespace
+
+double braking_gain(const JointLimits& limits, LimitMethod method, const Vector& authority) {
+  constexpr double share = 0.8;  // the rest is for speed-dependent forces and joints that brake at once
+  double gain = JointLimits::default_gain;
+  for (int joint = 0; joint < limits.size(); ++joint) {
+    if (limits.limited(joint) && authority[joint] > 0.0) {
+      gain = std::min(gain, share * authority[joint] / braking_speed(limits, method, joint));
+    }
+  }
+  return gain;
+}
 
 std::vector<Condition> velocity_conditions(const Robot& robot, const JointLimits& limits, LimitMethod method,
                                            double headroom, double dt) {
@@ -120,7 +158,7 @@ std::vector<Condition> velocity_conditions(const Robot& robot, const JointLimits
   if (method == LimitMethod::none) {
     return conditions;
   }
-  conditions.push_back(servo_is_stable(limits.options(), dt));
+  conditions.push_back(servo_is_stable(limits, dt));
   // a switched or literal row is complete from the buffer's edge on, and needs no more than one period's
   // travel
   const bool blended = method == LimitMethod::chain || method == LimitMethod::multilinear ||
@@ -137,12 +175,12 @@ std::vector<Condition> velocity_conditions(const Robot& robot, const JointLimits
 }
 
 std::vector<Condition> torque_conditions(const Robot& robot, const JointLimits& limits, LimitMethod method,
-                                         double headroom, double dt) {
+                                         double headroom, double dt, const Vector& authority) {
   std::vector<Condition> conditions;
   if (method == LimitMethod::none) {
     return conditions;
   }
-  conditions.push_back(second_order_servo_is_stable(limits.options(), dt));
+  conditions.push_back(second_order_servo_is_stable(limits, dt));
   for (int joint = 0; joint < limits.size(); ++joint) {
     if (!limits.limited(joint)) {
       continue;
@@ -153,6 +191,7 @@ std::vector<Condition> torque_conditions(const Robot& robot, const JointLimits& 
       conditions.push_back(rows_apart(robot, limits, joint));
       conditions.push_back(second_order_buffer_is_wide(robot, limits, joint, dt));
     }
+    conditions.push_back(drive_can_brake(robot, limits, method, joint, authority[joint]));
   }
   return conditions;
 }

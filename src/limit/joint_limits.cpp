@@ -15,6 +15,7 @@ constexpr double kEnvelopeRounding = 0.1;  // of v_max: radius of the envelope's
 
 JointLimits::JointLimits(const Robot& robot, const JointLimitOptions& options)
     : options_(options),
+      gain_(options.gain.value_or(default_gain)),
       lower_(robot.position_lower()),
       upper_(robot.position_upper()),
       velocity_limit_(robot.velocity_limit()),
@@ -26,9 +27,9 @@ JointLimits::JointLimits(const Robot& robot, const JointLimitOptions& options)
       motion_upper_(Vector::Zero(robot.nv())),
       near_upper_(static_cast<std::size_t>(robot.nv()), 0),
       near_lower_(static_cast<std::size_t>(robot.nv()), 0),
-      engagement_scale_(options.gain) {
+      engagement_scale_(gain_) {
   require_positive("limits: buffer", options.buffer);
-  require_positive("limits: gain", options.gain);
+  require_positive("limits: gain", gain_);
   require_positive("limits: servo_gain", options.servo_gain);
   require_positive("limits: margin", options.margin);
   for (const auto& [joint, buffer] : options.buffers) {
@@ -54,18 +55,18 @@ bool JointLimits::limited(int joint) const {
 void JointLimits::update(const VectorArg& q) {
   beyond_ = -1;
   furthest_beyond_ = 0.0;
-  engagement_scale_ = options_.gain;
+  engagement_scale_ = gain_;
   for (int j = 0; j < size(); ++j) {
     const double to_upper = upper_[j] - q[j];
     const double to_lower = q[j] - lower_[j];
     const double distance = std::min(to_upper, to_lower);
     side_[j] = to_upper <= to_lower ? 1.0 : -1.0;
     activation_[j] = ramp(options_.ramp, 1.0 - distance / buffer_[j]);
-    target_[j] = std::isfinite(distance) ? side_[j] * options_.gain * (distance - buffer_[j]) : 0.0;
+    target_[j] = std::isfinite(distance) ? side_[j] * gain_ * (distance - buffer_[j]) : 0.0;
 
     const double v_max = velocity_limit_[j];
-    motion_upper_[j] = std::clamp(options_.gain * (to_upper - options_.margin), -0.5 * v_max, v_max);
-    motion_lower_[j] = -std::clamp(options_.gain * (to_lower - options_.margin), -0.5 * v_max, v_max);
+    motion_upper_[j] = std::clamp(gain_ * (to_upper - options_.margin), -0.5 * v_max, v_max);
+    motion_lower_[j] = -std::clamp(gain_ * (to_lower - options_.margin), -0.5 * v_max, v_max);
     note_distances(j, to_upper, to_lower);
   }
 }
@@ -73,8 +74,8 @@ void JointLimits::update(const VectorArg& q) {
 /// What both orders keep of a joint's distances to its limits.
 void JointLimits::note_distances(int joint, double to_upper, double to_lower) {
   const auto k = static_cast<std::size_t>(joint);
-  near_upper_[k] = options_.gain * (to_upper - options_.margin) < velocity_limit_[joint] ? 1 : 0;
-  near_lower_[k] = options_.gain * (to_lower - options_.margin) < velocity_limit_[joint] ? 1 : 0;
+  near_upper_[k] = gain_ * (to_upper - options_.margin) < velocity_limit_[joint] ? 1 : 0;
+  near_lower_[k] = gain_ * (to_lower - options_.margin) < velocity_limit_[joint] ? 1 : 0;
   const double excess = -std::min(to_upper, to_lower);
   if (excess > furthest_beyond_) {
     furthest_beyond_ = excess;
@@ -89,10 +90,10 @@ JointLimits::Envelope JointLimits::envelope(int joint, double distance) const {
   }
   // hyperbola below both lines, so that the slope is continuous where they meet
   const double rounding = kEnvelopeRounding * v_max;
-  const double line = std::max(options_.gain * distance, -0.5 * v_max);
+  const double line = std::max(gain_ * distance, -0.5 * v_max);
   const double difference = line - v_max;
   const double root = std::hypot(difference, rounding);
-  const double slope = options_.gain * distance > -0.5 * v_max ? options_.gain : 0.0;
+  const double slope = gain_ * distance > -0.5 * v_max ? gain_ : 0.0;
   return {.speed = 0.5 * (line + v_max - root), .slope = 0.5 * slope * (1.0 - difference / root)};
 }
 
@@ -107,7 +108,7 @@ void JointLimits::update_second_order(const VectorArg& q, const VectorArg& v) {
   for (int j = 0; j < size(); ++j) {
     const double to_upper = upper_[j] - q[j];
     const double to_lower = q[j] - lower_[j];
-    const double reserve = options_.gain * buffer_[j];  // slack at which a row begins to act
+    const double reserve = gain_ * buffer_[j];  // slack at which a row begins to act
     const double slack_upper = envelope(j, to_upper).speed - v[j];
     const double slack_lower = envelope(j, to_lower).speed + v[j];
     if (options_.measure == Measure::predicted) {
@@ -119,8 +120,8 @@ void JointLimits::update_second_order(const VectorArg& q, const VectorArg& v) {
       const double distance = std::min(to_upper, to_lower);
       side_[j] = to_upper <= to_lower ? 1.0 : -1.0;
       activation_[j] = ramp(options_.ramp, 1.0 - distance / buffer_[j]);
-      const double servo = options_.gain * options_.servo_gain;
-      const double damping = options_.gain + options_.servo_gain;
+      const double servo = gain_ * options_.servo_gain;
+      const double damping = gain_ + options_.servo_gain;
       target_[j] =
           std::isfinite(distance) ? side_[j] * servo * (distance - buffer_[j]) - damping * v[j] : 0.0;
     }
@@ -128,17 +129,16 @@ void JointLimits::update_second_order(const VectorArg& q, const VectorArg& v) {
     motion_lower_[j] = -allowed_acceleration(j, to_lower - options_.margin, -v[j], 0.0);
     note_distances(j, to_upper, to_lower);
   }
-  engagement_scale_ = options_.gain * options_.servo_gain;
+  engagement_scale_ = gain_ * options_.servo_gain;
 }
 
 void JointLimits::blended_acceleration_bounds(const Vector& activation, double dt, Vector& lower,
                                               Vector& upper) const {
   const double kappa = ramp_slope_factor(options_.ramp);
-  const double gain = options_.gain;
-  const double c = 1.0 + 0.5 * gain * dt;
+  const double c = 1.0 + 0.5 * gain_ * dt;
   for (int j = 0; j < size(); ++j) {
-    const double travel = buffer_[j] * (1.0 - 0.5 * gain * gain * dt * dt) / (kappa * dt);
-    const double largest = std::max(0.0, (travel - velocity_limit_[j]) * gain / c);
+    const double travel = buffer_[j] * (1.0 - 0.5 * gain_ * gain_ * dt * dt) / (kappa * dt);
+    const double largest = std::max(0.0, (travel - velocity_limit_[j]) * gain_ / c);
     lower[j] = -largest;
     upper[j] = largest;
     Vector& near = side_[j] > 0.0 ? upper : lower;

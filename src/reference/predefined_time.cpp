@@ -9,18 +9,40 @@ namespace tope {
 PredefinedTime::PredefinedTime(const Options& options) : options_(options) {
   require_positive("PredefinedTime: duration [s]", options.duration);
   require_positive("PredefinedTime: gain [1/s]", options.gain);
+  if (options.replan_over != 0.0) {
+    require_positive("PredefinedTime: replan_over [s]", options.replan_over);
+  }
 }
 
-void PredefinedTime::start(double t, const VectorArg& error) {
+void PredefinedTime::start(double t, const VectorArg& error, const VectorArg& rate,
+                           const VectorArg& acceleration) {
+  plan(t, options_.duration, error, rate, acceleration);
+  deadline_ = t + options_.duration;
+}
+
+void PredefinedTime::replan(double t, const VectorArg& error, const VectorArg& rate,
+                            const VectorArg& acceleration) {
+  plan(t, std::max(deadline_ - t, options_.replan_over), error, rate, acceleration);
+}
+
+void PredefinedTime::plan(double t, double duration, const VectorArg& error, const VectorArg& rate,
+                          const VectorArg& acceleration) {
   start_time_ = t;
+  planned_duration_ = duration;
   initial_error_ = error;
+  initial_rate_ = rate;
+  initial_acceleration_ = acceleration;
 }
 
 void PredefinedTime::rate(double t, const VectorArg& error, Eigen::Ref<Vector> rate) const {
-  const double s = std::clamp((t - start_time_) / options_.duration, 0.0, 1.0);
-  const double h = 1.0 + s * s * (2.0 * s - 3.0);
-  const double h_rate = 6.0 * s * (s - 1.0) / options_.duration;
-  rate = (h_rate + options_.gain * h) * initial_error_ - options_.gain * error;
+  const double duration = planned_duration_;
+  const double s = std::clamp((t - start_time_) / duration, 0.0, 1.0);
+  const double a = 1.0 + s * s * (2.0 * s - 3.0);
+  const double a1 = 6.0 * s * (s - 1.0);
+  const double b = s * (1.0 + s * (s - 2.0));
+  const double b1 = 1.0 + s * (3.0 * s - 4.0);
+  rate = (a1 / duration + options_.gain * a) * initial_error_ +
+         (b1 + options_.gain * duration * b) * initial_rate_ - options_.gain * error;
 }
 
 void PredefinedTime::resize(int size) {
@@ -29,16 +51,9 @@ void PredefinedTime::resize(int size) {
   initial_acceleration_.setZero(size);
 }
 
-void PredefinedTime::start(double t, const VectorArg& error, const VectorArg& rate,
-                           const VectorArg& acceleration) {
-  start(t, error);
-  initial_rate_ = rate;
-  initial_acceleration_ = acceleration;
-}
-
 void PredefinedTime::acceleration(double t, const VectorArg& error, const VectorArg& error_rate,
                                   Eigen::Ref<Vector> acceleration) const {
-  const double duration = options_.duration;
+  const double duration = planned_duration_;
   const double s = std::clamp((t - start_time_) / duration, 0.0, 1.0);
   // each profile with its first and second derivative with respect to s
   const double a = 1.0 + s * s * s * (-10.0 + s * (15.0 - 6.0 * s));

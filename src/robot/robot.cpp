@@ -97,10 +97,17 @@ Robot Robot::build(const std::filesystem::path& urdf, const RobotConfig& config,
     robot.frame_names_.push_back(frame.name);
   }
   robot.model_ = std::move(shared);
-  robot.set_position_limits(model.lowerPositionLimit, model.upperPositionLimit);
-  robot.set_velocity_limit(model.upperVelocityLimit);
-  robot.set_effort_limit(model.upperEffortLimit);
+  robot.position_lower_ = model.lowerPositionLimit;
+  robot.position_upper_ = model.upperPositionLimit;
+  robot.velocity_limit_ = model.upperVelocityLimit;
+  robot.effort_limit_ = model.upperEffortLimit;
   robot.apply(config, where);
+  try {
+    robot.check_bounds();
+  } catch (const ConfigError& error) {
+    throw ConfigError(urdf.string() + ": " + error.what() +
+                      "; correct the URDF (effort_limit can be set in the robot's YAML file)");
+  }
   return robot;
 }
 

@@ -2,11 +2,13 @@
 #include "task_reader.hpp"
 
 #include <tope/common/names.hpp>
+#include <tope/limit/servo_gains.hpp>
 #include <tope/scenario/scenario.hpp>
 #include <tope/task/damping.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 namespace tope {
 namespace {
@@ -63,14 +65,38 @@ void read_joint_limits(const YamlReader& joints, Robot& robot, JointLimitOptions
   robot.set_velocity_limit(velocity);
 }
 
+std::optional<double> positive_if_given(const YamlReader& yaml, const std::string& key) {
+  return yaml.has(key) ? std::optional(yaml.positive(key)) : std::nullopt;
+}
+
+/// Either the library's `gain` and `servo_gain`, or the paper's `lambda_p` and `lambda_v`.
+void read_servo(const YamlReader& yaml, JointLimitOptions& options) {
+  if (!yaml.has("lambda_p") && !yaml.has("lambda_v")) {
+    options.gain = positive_if_given(yaml, "gain");
+    options.servo_gain = yaml.positive("servo_gain", options.servo_gain);
+    return;
+  }
+  for (const char* key : {"gain", "servo_gain"}) {
+    if (yaml.has(key)) {
+      yaml.fail(key,
+                "gain and servo_gain are the poles of lambda_p and lambda_v: give one pair or the other");
+    }
+  }
+  const double lambda_p = yaml.positive("lambda_p");
+  const double lambda_v = yaml.positive("lambda_v");
+  const ServoGains gains =
+      located(yaml, "lambda_v", [&] { return ServoGains::from_paper(lambda_p, lambda_v); });
+  options.gain = gains.gain;
+  options.servo_gain = gains.servo_gain;
+}
+
 LimitOptions read_limits(const YamlReader& yaml, Robot& robot) {
   LimitOptions limits;
   const std::string method = yaml.text("method", to_string(limits.method));
   limits.method = located(yaml, "method", [&] { return limit_method_from(method); });
   limits.rows.buffer = yaml.positive("buffer", limits.rows.buffer);
-  limits.rows.gain = yaml.positive("gain", limits.rows.gain);
+  read_servo(yaml, limits.rows);
   limits.rows.margin = yaml.positive("margin", limits.rows.margin);
-  limits.rows.servo_gain = yaml.positive("servo_gain", limits.rows.servo_gain);
   static const std::vector<std::string> measures{"predicted", "position"};
   limits.rows.measure =
       static_cast<Measure>(choice(yaml, "measure", yaml.text("measure", measures[0]), measures));
@@ -82,11 +108,11 @@ LimitOptions read_limits(const YamlReader& yaml, Robot& robot) {
     read_joint_limits(*joints, robot, limits.rows);
   }
   if (const auto law = yaml.optional_map("unilateral")) {
-    limits.unilateral.damping = law->positive("damping", limits.unilateral.damping);
-    limits.unilateral.fine_damping = law->positive("fine_damping", limits.unilateral.fine_damping);
-    limits.unilateral.fine_below = law->positive("fine_below", limits.unilateral.fine_below);
-    limits.unilateral.lock = law->positive("lock", limits.unilateral.lock);
-    limits.unilateral.headroom = law->positive("headroom", limits.unilateral.headroom);
+    limits.unilateral.damping = positive_if_given(*law, "damping");
+    limits.unilateral.fine_damping = positive_if_given(*law, "fine_damping");
+    limits.unilateral.fine_below = positive_if_given(*law, "fine_below");
+    limits.unilateral.lock = positive_if_given(*law, "lock");
+    limits.unilateral.headroom = positive_if_given(*law, "headroom");
     law->finish();
   }
   if (const auto field = yaml.optional_map("potential_field")) {
@@ -197,6 +223,32 @@ void add_lowest_level(const Robot& robot, Scenario& scenario) {
       std::to_string(lowest + 1) + ".");
 }
 
+/// How the simulated robot differs from the one that the controller believes in; empty when it does not.
+std::string model_errors(const RigidBodyOptions& plant) {
+  std::ostringstream text;
+  const auto separate = [&] { text << (text.tellp() > 0 ? ", " : ""); };
+  if (plant.inertia_scale != 1.0) {
+    text << "links " << plant.inertia_scale << " times as heavy";
+  }
+  if (plant.payload > 0.0) {
+    separate();
+    text << plant.payload << " kg at " << plant.payload_frame;
+  }
+  if (plant.delay > 0.0) {
+    separate();
+    text << "commands " << 1e3 * plant.delay << " ms late";
+  }
+  if (plant.friction) {
+    separate();
+    text << "friction in the joints";
+  }
+  if (plant.torque_noise > 0.0) {
+    separate();
+    text << "torque noise of " << 100.0 * plant.torque_noise << " % of the effort";
+  }
+  return text.str();
+}
+
 void add_notices(const Robot& robot, Scenario& scenario) {
   const ControllerOptions& options = scenario.controller;
   if (options.limits.method == LimitMethod::none) {
@@ -206,9 +258,16 @@ void add_notices(const Robot& robot, Scenario& scenario) {
     scenario.notices.emplace_back(
         "A potential field acts in the null space of the tasks and keeps no limit by itself.");
   }
+  if (options.mode == Mode::torque && options.limits.rows.measure == Measure::position) {
+    scenario.notices.emplace_back(
+        "Activations are measured on the position, as in the paper: fast joints overshoot their limits.");
+  }
   if (!options.limits.enforce_conditions) {
     scenario.notices.emplace_back(
         "Safety inequalities are reported, not enforced: limits.conditions is report.");
+  }
+  if (const std::string errors = model_errors(scenario.rigid_body); !errors.empty()) {
+    scenario.notices.push_back("The robot is not the one that the controller believes in: " + errors + ".");
   }
   if (options.mode == Mode::torque && options.null_space == NullSpace::compensated) {
     add_lowest_level(robot, scenario);

@@ -28,7 +28,10 @@ Reference read_reference(const YamlReader& task) {
   if (type == types[0]) {
     reference = Exponential{{.gain = yaml->positive("gain")}};
   } else if (type == types[1]) {
-    reference = PredefinedTime{{.duration = yaml->positive("duration"), .gain = yaml->positive("gain")}};
+    reference =
+        PredefinedTime{{.duration = yaml->positive("duration"),
+                        .gain = yaml->positive("gain"),
+                        .replan_over = yaml->has("replan_over") ? yaml->positive("replan_over") : 0.0}};
   } else {
     yaml->fail("type", "unknown reference '" + type + "'" + name_hint(type, types));
   }

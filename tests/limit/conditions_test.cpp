@@ -44,6 +44,42 @@ BOOST_AUTO_TEST_CASE(defaults_are_safe_at_a_kilohertz) {
   BOOST_TEST(conditions({}, LimitMethod::none, 1.0).empty());
 }
 
+BOOST_AUTO_TEST_CASE(drives_must_be_able_to_brake) {
+  const Robot robot = youbot();
+  const Vector authority = Vector::Constant(8, 6.0);
+  const double v_max = robot.velocity_limit()[kJoint];
+  for (const LimitMethod method : {LimitMethod::unilateral, LimitMethod::chain}) {
+    const JointLimits strict(robot, {.gain = 5.0, .servo_gain = 10.0});
+    const auto list = torque_conditions(robot, strict, method, 0.5, 1e-3, authority);
+    const Condition* brake = find(list, "brake", "arm_joint_2");
+    BOOST_REQUIRE(brake != nullptr);
+    const double per_gain = v_max + (method == LimitMethod::chain ? 10.0 * 0.1 : 0.0);
+    BOOST_TEST(brake->value == 5.0 * per_gain, boost::test_tools::tolerance(1e-12));
+    BOOST_TEST(brake->bound == 6.0);
+    BOOST_TEST(!brake->holds());
+    BOOST_TEST(brake->advice.find("lower limits.gain to at most") != std::string::npos);
+
+    const double gain = braking_gain(strict, method, authority);
+    BOOST_TEST(gain == 0.8 * 6.0 / per_gain, boost::test_tools::tolerance(1e-12));
+    const JointLimits safe(robot, {.gain = gain, .servo_gain = 10.0});
+    for (const Condition& condition : torque_conditions(robot, safe, method, 0.5, 1e-3, authority)) {
+      BOOST_TEST(condition.holds(), condition.name << " " << condition.joint);
+    }
+  }
+  BOOST_TEST(braking_gain(JointLimits(robot, {}), LimitMethod::chain, Vector::Constant(8, 1e4)) ==
+             JointLimits::default_gain);
+}
+
+BOOST_AUTO_TEST_CASE(drives_that_cannot_hold_are_named) {
+  const Robot robot = youbot();
+  const JointLimits limits(robot, {.gain = 1.0});
+  const auto list = torque_conditions(robot, limits, LimitMethod::chain, 0.5, 1e-3, Vector::Zero(8));
+  const Condition* brake = find(list, "brake", "arm_joint_2");
+  BOOST_REQUIRE(brake != nullptr);
+  BOOST_TEST(!brake->holds());
+  BOOST_TEST(brake->advice.find("cannot hold the robot against gravity") != std::string::npos);
+}
+
 BOOST_AUTO_TEST_CASE(servo_must_be_stable) {
   const auto list = conditions({.gain = 10.0}, LimitMethod::chain, 0.2);
   const Condition* servo = find(list, "servo", "");
@@ -116,7 +152,7 @@ BOOST_AUTO_TEST_CASE(bounds_keep_a_joint_inside_at_the_longest_period) {
   for (int i = 0; i <= 2000; ++i) {
     q[kJoint] = upper - 0.4 * i / 2000.0;
     limits.update(q);
-    BOOST_TEST(q[kJoint] + limits.motion_upper()[kJoint] / options.gain <= upper);
+    BOOST_TEST(q[kJoint] + limits.motion_upper()[kJoint] / limits.gain() <= upper);
   }
 }
 

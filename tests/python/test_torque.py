@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pinocchio as pin
 import pytest
+from scipy.optimize import linprog
 
 import tope
 
@@ -124,6 +125,84 @@ def test_compensated_null_space_differs_by_the_projected_bias() -> None:
     weighted = terms.mass @ q_map.T @ np.linalg.inv(q_map @ terms.mass @ q_map.T)
     projected = (np.eye(8) - weighted @ q_map) @ terms.bias
     assert torque("compensated") - torque("zero_torque") == pytest.approx(projected, abs=1e-8)
+
+
+def test_least_peak_wheel_torques_solve_a_linear_program() -> None:
+    """min t subject to -t <= f_i <= t and the wrench of the commanded base forces, by SciPy."""
+    overrides = {"wheel_distribution": "minimum_peak", "duration": 1.5, "log.every": 10}
+    overrides |= {f"tasks.{name}.reference.duration": 1.2 for name in ("orientation", "position")}
+    run = tope.simulate(ROOT / "scenarios/youbot_torque.yaml", overrides=overrides)
+    arm, radius = 0.385, 0.0475
+    to_wrench = np.array([[1, 1, 1, 1], [-1, 1, 1, -1], [-arm, arm, -arm, arm]]) / radius
+    peaks = []
+    for row in range(len(run.time)):
+        force = np.array([run.log[f"u.base_{axis}"][row] for axis in ("x", "y", "yaw")])
+        yaw = run.log["q.base_yaw"][row]
+        world_from_base = np.array([[np.cos(yaw), -np.sin(yaw), 0], [np.sin(yaw), np.cos(yaw), 0], [0, 0, 1]])
+        wrench = world_from_base.T @ force
+        wheels = np.array([run.log[f"wheel.{i}"][row] for i in range(4)])
+        bounds = np.vstack([np.hstack([sign * np.eye(4), -np.ones((4, 1))]) for sign in (1, -1)])
+        least = linprog(
+            [0, 0, 0, 0, 1],
+            A_ub=bounds,
+            b_ub=np.zeros(8),
+            A_eq=np.hstack([to_wrench, np.zeros((3, 1))]),
+            b_eq=wrench,
+            bounds=[(None, None)] * 5,
+        )
+        assert to_wrench @ wheels == pytest.approx(wrench, abs=1e-6)
+        assert np.abs(wheels).max() == pytest.approx(least.fun, abs=1e-7)
+        peaks.append(least.fun)
+    assert max(peaks) > 0.5  # the base did push
+
+
+LIMITED = """<robot name="r"><link name="base"/><link name="arm">{inertial}</link>
+<joint name="swing" type="revolute"><parent link="base"/><child link="arm"/><axis xyz="0 1 0"/>
+<limit lower="-1" upper="1" velocity="{velocity}" effort="{effort}"/></joint></robot>"""
+HEAVY = (
+    '<inertial><origin xyz="0.5 0 0"/><mass value="4"/>'
+    '<inertia ixx="0" iyy="0.1" izz="0" ixy="0" ixz="0" iyz="0"/></inertial>'
+)
+
+
+@pytest.mark.parametrize(
+    ("urdf", "limits", "messages"),
+    [
+        ({"inertial": ""}, {}, ["needs the inertia of every link", "swing moves no mass", "rotor_inertia"]),
+        ({"effort": 0}, {}, ["robot.urdf: effort_limit: swing: must be positive", "YAML"]),
+        ({"effort": 10}, {}, ["drive strong enough", "swing", "cannot hold the robot against gravity"]),
+        ({}, {"gain": 9.0}, ["drive strong enough to brake (swing)", "lower limits.gain to at most"]),
+        ({}, {"lambda_p": 100, "lambda_v": 10}, ["lambda_v^2 < 4 lambda_p", "raise lambda_v to at least 20"]),
+        ({}, {"lambda_p": 100}, ["one complete pair"]),
+        ({}, {"lambda_p": 16, "lambda_v": 10, "gain": 2.0}, ["one complete pair"]),
+    ],
+)
+def test_bad_robots_and_gains_are_refused(
+    tmp_path: Path, urdf: dict[str, object], limits: dict[str, float], messages: list[str]
+) -> None:
+    file = tmp_path / "robot.urdf"
+    file.write_text(LIMITED.format(**({"inertial": HEAVY, "velocity": 2, "effort": 30} | urdf)))
+    with pytest.raises(tope.ConfigError) as refusal:
+        robot = tope.Robot.from_urdf(file)
+        tope.Controller(robot, mode="torque", dt=1e-3, limits=tope.LimitOptions(**limits))
+    for message in messages:
+        assert message in str(refusal.value)
+
+
+def test_limited_joints_need_a_speed_limit() -> None:
+    robot = tope.Robot.from_urdf(URDF, CONFIG)
+    robot.velocity_limit[4] = np.inf
+    with pytest.raises(tope.ConfigError, match="arm_joint_2 has position limits but no speed limit"):
+        tope.Controller(robot, mode="torque", dt=1e-3)
+    tope.Controller(robot, mode="velocity", dt=1e-3)
+
+
+def test_gain_left_open_is_what_the_drive_can_brake_with(tmp_path: Path) -> None:
+    file = tmp_path / "robot.urdf"
+    file.write_text(LIMITED.format(inertial=HEAVY, velocity=2, effort=30))
+    controller = tope.Controller(tope.Robot.from_urdf(file), mode="torque", dt=1e-3)
+    authority = (30 - 4 * 9.81 * 0.5) / (4 * 0.25 + 0.1)  # stretched out
+    assert controller.limit_gain == pytest.approx(0.8 * authority / 2, rel=1e-3)
 
 
 def test_torque_mode_refuses_joint_weights() -> None:

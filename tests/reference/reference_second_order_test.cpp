@@ -73,6 +73,39 @@ BOOST_AUTO_TEST_CASE(predefined_time_matches_its_start_and_arrives_at_rest) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(new_plan_continues_and_arrives_in_the_time_that_is_left) {
+  Random random(3);
+  const Vector e = random.vector(3);
+  PredefinedTime reference({.duration = 2.0, .gain = 3.0, .replan_over = 0.5});
+  reference.resize(3);
+  reference.start(0.0, e, Vector::Zero(3), Vector::Zero(3));
+  for (const auto& [now, arrival] : {std::pair{0.8, 2.0}, {1.9, 2.4}, {3.0, 3.5}}) {
+    const Vector error = random.vector(3);  // where the task was held
+    const Vector rate = random.vector(3);
+    Vector before(3);
+    Vector after(3);
+    reference.acceleration(now, error, rate, before);
+    PredefinedTime planned = reference;
+    planned.replan(now, error, rate, before);
+    planned.acceleration(now, error, rate, after);
+    BOOST_TEST((after - before).norm() <= 1e-12);
+    Vector position = error;
+    Vector speed = rate;
+    const int steps = 4000;
+    const double h = (arrival - now) / steps;
+    for (int i = 0; i < steps; ++i) {  // midpoint rule
+      Vector a(3);
+      planned.acceleration(now + i * h, position, speed, a);
+      const Vector half_speed = speed + 0.5 * h * a;
+      planned.acceleration(now + (i + 0.5) * h, position + 0.5 * h * speed, half_speed, a);
+      position += h * half_speed;
+      speed += h * a;
+    }
+    BOOST_TEST(position.norm() <= 1e-5);
+    BOOST_TEST(speed.norm() <= 1e-4);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(predefined_time_gives_no_step_from_rest) {
   PredefinedTime reference(2.0);
   reference.resize(1);

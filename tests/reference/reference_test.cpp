@@ -21,7 +21,8 @@ constexpr double kGain = 2.5;      // 1/s
 PredefinedTime started(const Vector& initial) {
   PredefinedTime reference({.duration = kDuration, .gain = kGain});
   reference.resize(static_cast<int>(initial.size()));
-  reference.start(kStart, initial);
+  const Vector at_rest = Vector::Zero(initial.size());
+  reference.start(kStart, initial, at_rest, at_rest);
   return reference;
 }
 
@@ -45,6 +46,28 @@ Matrix3 skew(const Vector3& w) {
 }  // namespace
 
 BOOST_AUTO_TEST_SUITE(reference)
+
+BOOST_AUTO_TEST_CASE(new_plan_continues_and_arrives_in_the_time_that_is_left) {
+  Random random(4);
+  PredefinedTime reference({.duration = kDuration, .gain = kGain, .replan_over = 1.0});
+  reference.resize(2);
+  reference.start(kStart, random.vector(2), Vector::Zero(2), Vector::Zero(2));
+  for (const auto& [now, arrival] : {std::pair{3.0, kStart + kDuration}, {5.2, 6.2}, {9.0, 10.0}}) {
+    Vector error = random.vector(2);  // where the task was held
+    const Vector before = rate_of(reference, now, error);
+    PredefinedTime planned = reference;
+    planned.replan(now, error, before, Vector::Zero(2));
+    BOOST_TEST((rate_of(planned, now, error) - before).norm() <= 1e-12);
+    const int steps = 4000;
+    const double h = (arrival - now) / steps;
+    for (int i = 0; i < steps; ++i) {  // midpoint rule
+      const Vector half = error + 0.5 * h * rate_of(planned, now + i * h, error);
+      error += h * rate_of(planned, now + (i + 0.5) * h, half);
+    }
+    BOOST_TEST(error.norm() <= 1e-5);
+    BOOST_TEST(rate_of(planned, arrival, Vector::Zero(2)).norm() <= 1e-12);
+  }
+}
 
 BOOST_AUTO_TEST_CASE(exponential_is_the_rate_of_its_solution) {
   Random random(1);

@@ -200,6 +200,16 @@ BOOST_AUTO_TEST_CASE(bad_robot_files_are_refused) {
   check_config_error("effort_limit: {arm_joint_9: 1}\n", {"robot.yaml", "effort_limit", "'arm_joint_9'"});
 }
 
+BOOST_AUTO_TEST_CASE(zero_effort_is_refused_unless_the_configuration_replaces_it) {
+  const TemporaryFile urdf(
+      "robot.urdf", urdf_with_joint("revolute", R"(<limit lower="-1" upper="1" velocity="1" effort="0"/>)"));
+  check_error([&] { Robot::from_urdf(urdf.path()); },
+              {"robot.urdf: effort_limit: b: must be positive, got 0.0", "robot's YAML file"});
+  RobotConfig config;
+  config.effort_limit["b"] = 3.0;
+  BOOST_TEST(Robot::from_urdf(urdf.path(), config).effort_limit()[1] == 3.0);
+}
+
 BOOST_AUTO_TEST_CASE(configuration_replaces_effort_limits) {
   const TemporaryFile file("robot.yaml", "effort_limit: {arm_joint_1: 5.5}\n");
   const Robot robot = Robot::from_urdf(source_path("robots/youbot/youbot.urdf"), file.path());

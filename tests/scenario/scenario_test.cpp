@@ -158,6 +158,43 @@ BOOST_AUTO_TEST_CASE(wrong_values_are_refused) {
   check_refused("youbot.yaml", "youbt.yaml", {"youbt.yaml: no such file"});
 }
 
+BOOST_AUTO_TEST_CASE(limit_servo_takes_one_pair_of_gains) {
+  const TemporaryFile file("scenario.yaml",
+                           replaced(good_scenario(), "buffer: 0.12", "lambda_p: 80\n  lambda_v: 24"));
+  const JointLimitOptions& rows = Scenario::load(file.path()).controller.limits.rows;
+  BOOST_TEST(rows.gain.value() == 4.0, boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(rows.servo_gain == 20.0, boost::test_tools::tolerance(1e-12));
+  check_refused(
+      "buffer: 0.12", "lambda_p: 80\n  lambda_v: 10",
+      {"scenario.yaml:11: limits.lambda_v: limits: lambda_v^2 < 4 lambda_p", "raise lambda_v to at least"});
+  check_refused("buffer: 0.12", "lambda_p: 80", {"limits.lambda_v: is missing"});
+  check_refused("buffer: 0.12", "lambda_p: 80\n  lambda_v: 24\n  gain: 3",
+                {"scenario.yaml:12: limits.gain", "one pair or the other"});
+}
+
+BOOST_AUTO_TEST_CASE(wrong_models_and_unsafe_measures_are_said) {
+  const std::string torque = replaced(good_scenario(), "mode: velocity", "mode: torque");
+  const TemporaryFile file("scenario.yaml", torque);
+  const auto notices = [&](const std::map<std::string, std::string>& overrides) {
+    std::string all;
+    for (const std::string& notice : Scenario::load(file.path(), overrides).notices) {
+      all += notice + "\n";
+    }
+    return all;
+  };
+  BOOST_TEST(notices({}).find("believes") == std::string::npos);
+  const std::string said = notices({{"plant.payload", "0.5"},
+                                    {"plant.delay", "0.002"},
+                                    {"plant.friction", "true"},
+                                    {"plant.inertia_scale", "0.8"},
+                                    {"plant.torque_noise", "0.01"}});
+  BOOST_TEST(
+      said.find("links 0.8 times as heavy, 0.5 kg at ee, commands 2 ms late, friction in the joints, torque "
+                "noise of 1 % of the effort.") != std::string::npos,
+      said);
+  BOOST_TEST(notices({{"limits.measure", "position"}}).find("overshoot") != std::string::npos);
+}
+
 BOOST_AUTO_TEST_CASE(files_that_are_no_scenario_are_refused) {
   check_error([] { Scenario::load("/no/such/scenario.yaml"); }, {"/no/such/scenario.yaml: no such file"});
   const TemporaryFile broken("scenario.yaml", "a: 1\nb: [1, 2\nc: 3\n");

@@ -26,9 +26,9 @@ Matrix closed(const Matrix& open, const Matrix& a, double lock) {
   Matrix keep = Matrix::Identity(n, n);
   for (Eigen::Index i = 0; i < svd.singularValues().size(); ++i) {
     const double x = std::min(1.0, svd.singularValues()[i] / lock);
-    const double locked = x * x * (3.0 - 2.0 * x);
+    const double locked = x * x * x * (10.0 - 15.0 * x + 6.0 * x * x);
     const Vector v = svd.matrixV().col(i);
-    keep -= (1.0 - std::sqrt(1.0 - locked)) * v * v.transpose();
+    keep -= locked * v * v.transpose();
   }
   return open * keep;
 }

@@ -82,6 +82,7 @@ class Controller {
   void stand_still(Eigen::Ref<Vector> u) const;
   void fill_limits(const VectorArg& q, const VectorArg& v);
   void fill_tasks(double t);
+  void observe_tasks();
   void fill_field();
   void leave_bias_to_tasks();
   CommandBounds bound_velocity();
@@ -91,6 +92,7 @@ class Controller {
   Robot robot_;
   ControllerOptions options_;
   RobotTerms terms_;
+  Vector authority_;  // what each drive can brake with, torque mode (n)
   JointLimits limits_;
   std::optional<PotentialField> field_;
   Whitening whitening_;

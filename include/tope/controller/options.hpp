@@ -5,6 +5,7 @@
 #include <tope/limit/joint_limits.hpp>
 #include <tope/limit/potential_field.hpp>
 
+#include <optional>
 #include <vector>
 
 namespace tope {
@@ -21,10 +22,21 @@ enum class NullSpace {
   zero_torque,  ///< nothing, as in the paper: the null space falls and drifts
 };
 
+/// Unilateral::Options; what is unset is chosen for the mode, since the units differ.
+struct UnilateralOptions {
+  std::optional<double> damping{};
+  std::optional<double> fine_damping{};
+  std::optional<double> fine_below{};
+  std::optional<double> lock{};
+  std::optional<double> headroom{};
+
+  Unilateral::Options resolved(Mode mode) const;
+};
+
 struct LimitOptions {
   LimitMethod method = LimitMethod::unilateral;
   JointLimitOptions rows{};                 ///< buffers, gain, ramp, margin
-  Unilateral::Options unilateral{};         ///< used by the method of that name
+  UnilateralOptions unilateral{};           ///< used by the method of that name
   PotentialFieldOptions potential_field{};  ///< used by the method of that name
   bool enforce_conditions = true;  ///< false: build the controller although a safety inequality fails
 };

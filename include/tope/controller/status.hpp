@@ -11,19 +11,21 @@ namespace tope {
 
 /// What acted in one cycle. Several may act at once.
 enum class Event : std::uint8_t {
-  limit,      ///< a joint limit shapes the command
-  scaled,     ///< the tasks' share was scaled down to keep a bound
-  clipped,    ///< what the limits ask for is beyond a bound by itself, and was clipped
-  singular,   ///< a task direction is nearly lost, and was damped
-  beyond,     ///< a joint is beyond its limit, and is led back
+  limit,     ///< a joint limit shapes the command
+  scaled,    ///< the tasks' share was scaled down to keep a bound
+  clipped,   ///< what the limits ask for is beyond a bound by itself, and was clipped
+  singular,  ///< a task direction is nearly lost, and was damped
+  beyond,    ///< a joint is beyond its limit, and is led back
+  held,  ///< a limit, a bound or a higher level holds back a task with a promised time: the promise is void
   near_flip,  ///< an orientation error is within 0.05 rad of pi, where its direction flips
   cut_off,    ///< a solver reached its iteration bound: limits hold, tasks are served less well
   bad_input,  ///< the state or time is not finite or has the wrong size: no motion commanded, nothing changed
               ///< inside
 };
 
-inline constexpr std::array all_events{Event::limit,  Event::scaled,    Event::clipped, Event::singular,
-                                       Event::beyond, Event::near_flip, Event::cut_off, Event::bad_input};
+inline constexpr std::array all_events{Event::limit,     Event::scaled,  Event::clipped,
+                                       Event::singular,  Event::beyond,  Event::held,
+                                       Event::near_flip, Event::cut_off, Event::bad_input};
 
 /// Short name, as in the log: "limit", "scaled", ...
 std::string_view to_string(Event event);

@@ -19,8 +19,8 @@ class Hierarchy final : public StackLaw {
  public:
   struct Options {
     double damped_below = 0.05;  ///< rho_0: directions with less left than this are damped
-    double locked_above = 0.02;  ///< rho_lock < rho_0: those with more left are closed to lower levels
-    double epsilon = 0.1;        ///< eps, in units of the whitened rows
+    double locked_above = 0.03;  ///< rho_lock < rho_0: those with more left are closed to lower levels
+    double epsilon = 0.2;        ///< eps, in units of the whitened rows
   };
 
   /// Errors: ConfigError unless 0 < locked_above < damped_below < 1 and epsilon > 0.

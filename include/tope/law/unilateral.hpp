@@ -13,8 +13,10 @@ namespace tope {
 ///   z = argmin |A_k (y + M z) - b_k|^2 + lambda^2 |z|^2
 ///       subject to lower + eta_k <= T (y + M z) <= upper - eta_k
 ///   y <- y + M z
-///   M <- M (I - sum (1 - sqrt(1 - s(sigma))) v v^T),   sigma, v singular values and right vectors of A_k M
-/// with s a smooth step from 0 at sigma = 0 to 1 at `lock`, and eta_k = headroom / (1 + k) for level number k.
+///   M <- M (I - sum s(sigma) v v^T),   sigma, v singular values and right vectors of A_k M
+/// with s the quintic step from 0 at sigma = 0 to 1 at `lock`, and eta_k = headroom / (1 + k) for level number k. Near
+/// `lock` a direction opens with the third power of what is missing: an opening of lambda is all that a lower level
+/// needs to use the direction, and a steeper step would hand it over within a few milliseconds.
 ///
 /// The damping lambda makes each level strictly convex, the soft lock hands a lost direction down gradually, and the
 /// shrinking headroom leaves every level an interior: together they make the command continuous in the state.

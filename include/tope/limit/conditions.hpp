@@ -26,9 +26,13 @@ struct Condition {
 std::vector<Condition> velocity_conditions(const Robot& robot, const JointLimits& limits, LimitMethod method,
                                            double headroom, double dt);
 
-/// The same of torque mode, for the rows measured on the predicted position and for the unilateral law. What the motors
-/// must be able to brake depends on the state, and is not checked.
+/// The same of torque mode, for the rows measured on the predicted position and for the unilateral law. `authority` (n)
+/// is what each drive can brake with, braking_authority() [rad/s2 or m/s2].
 std::vector<Condition> torque_conditions(const Robot& robot, const JointLimits& limits, LimitMethod method,
-                                         double headroom, double dt);
+                                         double headroom, double dt, const Vector& authority);
+
+/// Largest gain of the limits [1/s], up to JointLimits::default_gain, that leaves a fifth of every limited joint's
+/// authority (n) unused.
+double braking_gain(const JointLimits& limits, LimitMethod method, const Vector& authority);
 
 }  // namespace tope

@@ -5,6 +5,7 @@
 #include <tope/robot/robot.hpp>
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,9 +20,11 @@ enum class Measure {
 struct JointLimitOptions {
   double buffer = 0.1;                      ///< beta: width of the zone inside each limit [rad or m]
   std::map<std::string, double> buffers{};  ///< joints with a buffer of their own
-  double gain = 10.0;                       ///< lambda: speed allowed or asked for per distance [1/s]
-  Ramp ramp = Ramp::raised_cosine;          ///< how activations rise across the buffer
-  double servo_gain = 20.0;  ///< gamma_2: how fast speed returns below the envelope, torque mode [1/s]
+  /// lambda, gamma_1: speed allowed or asked for per distance [1/s]. Unset: JointLimits::default_gain; a controller in
+  /// torque mode takes less where the motors could not brake.
+  std::optional<double> gain{};
+  Ramp ramp = Ramp::raised_cosine;  ///< how activations rise across the buffer
+  double servo_gain = 10.0;         ///< gamma_2: how fast speed returns below the envelope, torque mode [1/s]
   Measure measure = Measure::predicted;  ///< of the activations in torque mode
   double margin = 1e-3;                  ///< m: distance kept from the limit by the unilateral law [rad or m]
 };
@@ -43,6 +46,8 @@ struct JointLimitOptions {
 ///   dv/dt <= V' v - servo_gain (v - V),  and the mirror image below.
 class JointLimits {
  public:
+  static constexpr double default_gain = 10.0;  ///< [1/s]
+
   /// Errors: ConfigError for an unknown joint in `buffers`, buffers that overlap or a value that is not
   /// positive.
   JointLimits(const Robot& robot, const JointLimitOptions& options);
@@ -78,6 +83,7 @@ class JointLimits {
   const Vector& upper() const { return upper_; }
   const Vector& velocity_limit() const { return velocity_limit_; }
   double buffer(int joint) const { return buffer_[joint]; }
+  double gain() const { return gain_; }  ///< [1/s]
   const JointLimitOptions& options() const { return options_; }
   /// True when the joint has a finite limit on either side.
   bool limited(int joint) const;
@@ -94,6 +100,7 @@ class JointLimits {
   void note_distances(int joint, double to_upper, double to_lower);
 
   JointLimitOptions options_;
+  double gain_;
   Vector lower_;
   Vector upper_;
   Vector velocity_limit_;

@@ -19,9 +19,12 @@ class Exponential {
   /// Errors: ConfigError unless the gain is positive and finite.
   explicit Exponential(const Options& options);
 
-  void start(double /*t*/, const VectorArg& /*error*/) {}
   void start(double /*t*/, const VectorArg& /*error*/, const VectorArg& /*rate*/,
              const VectorArg& /*acceleration*/) {}
+  void replan(double /*t*/, const VectorArg& /*error*/, const VectorArg& /*rate*/,
+              const VectorArg& /*acceleration*/) {}
+  void wait(double /*duration*/) {}
+  bool replans() const { return false; }
   /// Desired rate of the error (m) at time t [s].
   void rate(double t, const VectorArg& error, Eigen::Ref<Vector> rate) const;
   /// Desired acceleration of the error (m) at time t [s], given the error and its rate.

@@ -7,27 +7,36 @@
 namespace tope {
 
 /// Convergence at a stated time by a time base generator (Becerra et al. 2018): the error is to follow
-/// e_r = h(s) e0 with s = (t - t0) / duration and h = 1 - 3 s^2 + 2 s^3, and is steered back to it with
-/// `gain`. The rate is continuous at both ends, and zero at the start.
+/// e_r = a e0 + b e0' with s = (t - t0) / duration and cubic a, b that match error and rate at the start and end at
+/// rest, and is steered back to it with `gain`. At first e0' = 0, so that the rate starts at zero.
 ///
 /// Of second order, e_r = a e0 + b e0' + c e0'' with quintic a, b, c that match error, rate and acceleration at
 /// the start and end at rest; a deviation from e_r decays with a double pole at -gain.
+///
+/// The promise is void while a limit, a bound or a higher level holds the task back. With `replan_over` > 0 the plan
+/// then waits, so that the task does not push ever harder, and is made anew on release, from the present error and what
+/// it asked for last, so that nothing jumps.
 class PredefinedTime {
  public:
   struct Options {
     double duration = 5.0;  ///< from the first update of the task [s]
     double gain = 2.0;      ///< of the deviation from e_r [1/s]
+    /// Least time for a plan made after a release [s]; else it takes what is left of `duration`. 0: never plans anew.
+    double replan_over = 0.0;
   };
 
   PredefinedTime() = default;
   explicit PredefinedTime(double duration) : PredefinedTime(Options{.duration = duration}) {}
-  /// Errors: ConfigError unless duration and gain are positive and finite.
+  /// Errors: ConfigError unless duration and gain are positive and finite, and replan_over is not negative.
   explicit PredefinedTime(const Options& options);
 
-  /// Latches time [s] and error (m) of the start.
-  void start(double t, const VectorArg& error);
-  /// And its rate and acceleration, for the second order.
+  /// Latches time [s], error, rate and, for the second order, acceleration (m each) of the start.
   void start(double t, const VectorArg& error, const VectorArg& rate, const VectorArg& acceleration);
+  /// The same after a release, for the time that is left.
+  void replan(double t, const VectorArg& error, const VectorArg& rate, const VectorArg& acceleration);
+  /// Lets the plan wait for a while [s].
+  void wait(double duration) { start_time_ += duration; }
+  bool replans() const { return options_.replan_over > 0.0; }
   /// Desired rate of the error (m) at time t [s].
   void rate(double t, const VectorArg& error, Eigen::Ref<Vector> rate) const;
   /// Desired acceleration of the error (m) at time t [s], given the error and its rate.
@@ -38,8 +47,13 @@ class PredefinedTime {
   void resize(int size);
 
  private:
+  void plan(double t, double duration, const VectorArg& error, const VectorArg& rate,
+            const VectorArg& acceleration);
+
   Options options_;
   double start_time_ = 0.0;
+  double planned_duration_ = 0.0;
+  double deadline_ = 0.0;
   Vector initial_error_;
   Vector initial_rate_;
   Vector initial_acceleration_;

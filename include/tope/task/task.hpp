@@ -39,8 +39,13 @@ class Task {
   void update(const RobotTerms& terms, double t);
   /// The same for second order; `acceleration` (nv) is what the joints were last commanded to.
   void update_second_order(const RobotTerms& terms, double t, const Vector& acceleration);
+  /// Tells the task which motion the joints were commanded to after all (nv): velocities, or accelerations of second
+  /// order. Notes whether that holds the task back; on release, a reference that can plans anew.
+  void observe(const Vector& motion);
+  /// True while the task gets less than half of what it asks for, so that its promised time does not hold.
+  bool held() const { return held_; }
   /// Lets the next update() start the reference anew.
-  void restart() { started_ = false; }
+  void restart();
 
   const Vector& error() const { return error_; }  ///< e (m)
   const Matrix& jacobian() const {
@@ -88,10 +93,18 @@ class Task {
   bool near_flip_ = false;
 
  private:
+  void start_reference(double t, const Vector& rate, const Vector& acceleration);
+  bool replans() const;
+
   Vector rate_;
   Vector acceleration_;
+  Vector served_;  // of rate_ or acceleration_, what the last motion gave
   Reference reference_;
+  double last_time_ = 0.0;
   bool started_ = false;
+  bool second_order_ = false;
+  bool held_ = false;
+  bool released_ = false;  // since the last update
 };
 
 }  // namespace tope
