@@ -37,7 +37,7 @@ viewer/node_modules/.ready: viewer/package.json viewer/package-lock.json | $(SET
 # Type checker, linter, and the Chromium that the tests open pages in.
 viewer-tests: $(CHROMIUM)
 
-$(CHROMIUM): viewer/package.json viewer/package-lock.json viewer/unpack_chromium.js | $(SETUP)
+$(CHROMIUM): viewer/package.json viewer/package-lock.json viewer/unpack_chromium.js | $(VIEWER)
 	$(NPM) ci --no-audit --no-fund --loglevel=error
 	touch viewer/node_modules/.ready
 	mkdir -p $(@D)

@@ -243,6 +243,12 @@ class LiveSimulation:
     def status_text(self) -> str: ...
 
     @property
+    def limit_gain(self) -> float:
+        """
+        The gain that limits are kept with [1/s], chosen by the controller if the scenario does not say.
+        """
+
+    @property
     def errors(self) -> dict:
         """
         Norm of each task's error [m or rad]; None for a task that is not present.

@@ -100,7 +100,7 @@ def test_the_method_is_switched_for_all_and_the_robot_follows(page, session):
     two.wait_for(lambda: two.value("limits.method") == "none")
     two.wait_for(lambda: two.reads("· none ·"))
     two.set("Restart", True)
-    wait_for(lambda: session.state().position[0] > 0.5)  # through the obstacle at 0.35 m
+    wait_for(lambda: session.state().position[0] > 0.36)  # through the obstacle at 0.35 m
     two.set("limits.method", "unilateral")
     one.wait_for(lambda: one.reads("· unilateral ·"))
     wait_for(lambda: session.state().position[0] < 0.35)  # led back
