@@ -79,8 +79,7 @@ void bind_live(nb::module_& module) {
                      return describe(controller.status(), controller.robot());
                    })
       .def_prop_ro(
-          "limit_gain",
-          [](const LiveSimulation& live) { return live.loop().controller().limits().gain(); },
+          "limit_gain", [](const LiveSimulation& live) { return live.loop().controller().limits().gain(); },
           "The gain that limits are kept with [1/s], chosen by the controller if the scenario does not say.")
       .def_prop_ro("errors", &errors,
                    "Norm of each task's error [m or rad]; None for a task that is not present.")
