@@ -12,8 +12,10 @@ import numpy as np
 import pytest
 from kinematics import frames, placement
 from PIL import Image
+from test_report import make_run
 
 from tope.compare import compare
+from tope.report import write_comparison_report, write_run_report
 from tope.simulation import load_run, simulate
 
 ROOT = Path(__file__).parents[2]
@@ -284,3 +286,34 @@ def test_the_logarithmic_scale_and_print_draw_without_complaint(page):
     page.run("dispatchEvent(new Event('beforeprint'))")
     panels = page.run("document.querySelectorAll('figure').length")
     assert page.run("document.querySelectorAll('figure .uplot canvas').length") == panels
+
+
+@pytest.mark.parametrize("rows", [0, 1, 2])
+def test_a_very_short_run_has_a_page_that_works(browser, tmp_path, rows):
+    write_run_report(make_run(rows=rows), tmp_path / "report.html")
+    for page in checked(browser.open(report(tmp_path))):
+        page.press("ArrowRight")
+        page.run("dispatchEvent(new Event('beforeprint'))")
+
+
+def test_runs_of_unlike_robots_have_plots_and_no_replay(browser, tmp_path):
+    runs = {"one": make_run(rows=101), "two": make_run(rows=101)}
+    runs["two"].scenario["robot"]["name"] = "another"
+    write_comparison_report(runs, tmp_path / "report.html")
+    for page in checked(browser.open(report(tmp_path))):
+        assert page.run("document.getElementById('stage')") is None
+        assert "No replay" in page.run("document.querySelector('.replay').innerText")
+        page.press("ArrowRight")
+        assert page.run("tope.cursorTimes()")[0] == pytest.approx(0.05, abs=0.05)
+        page.click("#runs button")
+        assert page.run("tope.shownRuns()") == ["two"]
+
+
+def test_every_plot_and_scale_of_a_torque_comparison_draws(browser, tmp_path):
+    runs = {name: make_run(rows=1001, mode="torque", method=name) for name in ("unilateral", "chain")}
+    write_comparison_report(runs, tmp_path / "report.html")
+    for page in checked(browser.open(report(tmp_path))):
+        page.click("#log")
+        page.run("dispatchEvent(new Event('beforeprint'))")
+        panels = page.run("document.querySelectorAll('figure').length")
+        assert page.run("document.querySelectorAll('figure .uplot canvas').length") == panels
