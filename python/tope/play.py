@@ -130,6 +130,7 @@ def told(scenario: Mapping[str, Any], state: State, refused: str) -> str:
         lines.append(f"error of {task['name']}: {said}")
     if state.lost > 0:
         lines.append(f"{words.number(state.lost, 's')} lost: this machine is too slow")
+    lines += [f"Note: {notice}" for notice in scenario["notices"]]
     if refused:
         lines.append(f"**Not changed:** {refused}")
     return "  \n".join(lines)

@@ -99,6 +99,7 @@ def test_the_method_is_switched_for_all_and_the_robot_follows(page, session):
     one.set("limits.method", "none")
     two.wait_for(lambda: two.value("limits.method") == "none")
     two.wait_for(lambda: two.reads("· none ·"))
+    two.wait_for(lambda: two.reads("Note: Joint limits are not kept"))
     two.set("Restart", True)
     wait_for(lambda: session.state().position[0] > 0.36)  # through the obstacle at 0.35 m
     two.set("limits.method", "unilateral")
