@@ -1,187 +1,199 @@
 #include <tope/law/bounded_least_squares.hpp>
-
-#include <Eigen/Cholesky>
-#include <Eigen/Jacobi>
+#include <tope/law/small_cholesky.hpp>
+#include <tope/law/small_product.hpp>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 namespace tope {
 namespace {
 
 constexpr double kFeasibility = 1e-10;  // a row counts as violated beyond this, in the units of the bounds
-constexpr double kDependence = 1e-13;   // squared sine below which a row depends on the active ones
-constexpr int kIterationsPerUnknown = 10;
+constexpr double kDependence =
+    1e-10;                  // a held row whose Schur pivot is this small beside its diagonal is dependent
+constexpr int kRounds = 6;  // of the primal-dual method, before the dual one takes over
 
 }  // namespace
 
 BoundedLeastSquares::BoundedLeastSquares(int n, int constraints)
-    : hessian_(n, n),
-      basis_(n, n),
-      triangle_(n, n),
+    : factor_(n, n),
+      free_z_(Vector::Zero(n)),
       z_(Vector::Zero(n)),
-      direction_(n),
-      step_(n),
-      dual_step_(n),
-      active_multiplier_(n),
-      active_row_(static_cast<std::size_t>(n)),
-      active_sign_(static_cast<std::size_t>(n)),
+      in_rows_(Vector::Zero(n)),
+      response_(n, n),
+      schur_(n, n),
+      held_multiplier_(n),
       multipliers_(Vector::Zero(constraints)),
-      row_value_(constraints) {}
+      row_value_(constraints),
+      dual_(n, constraints),
+      padded_d_(Matrix::Zero(constraints, n)),
+      no_guess_(static_cast<std::size_t>(constraints), 0) {
+  held_.reserve(static_cast<std::size_t>(constraints));
+  held_sign_.reserve(static_cast<std::size_t>(constraints));
+}
 
 bool BoundedLeastSquares::solve(const Eigen::Ref<const Matrix>& a, const VectorArg& r, double mu,
-                                const Matrix& d, const Vector& lower, const Vector& upper) {
-  start(a, r, mu);
-  iterations_left_ = kIterationsPerUnknown * static_cast<int>(z_.size());
-  bool solved = true;
-  while (solved) {
-    row_value_.noalias() = d * z_;
-    const Violation violation = worst_violation(lower, upper);
-    if (violation.row < 0) {
-      break;
-    }
-    solved = satisfy(violation, d, lower, upper);
+                                const Eigen::Ref<const Matrix>& d, const Vector& lower, const Vector& upper) {
+  std::fill(no_guess_.begin(), no_guess_.end(), 0);
+  return solve(a, r, mu, d, lower, upper, no_guess_);
+}
+
+bool BoundedLeastSquares::solve(const Eigen::Ref<const Matrix>& a, const VectorArg& r, double mu,
+                                const Eigen::Ref<const Matrix>& d, const Vector& lower, const Vector& upper,
+                                ActiveRows& active) {
+  unknowns_ = static_cast<int>(d.cols());
+  factorise(a, mu);
+  auto free_z = free_z_.head(unknowns_);
+  if (by_rows_) {
+    auto weights = in_rows_.head(a.rows());
+    weights = r;
+    const auto factor = factor_.topLeftCorner(a.rows(), a.rows());
+    solve_lower(factor, weights);
+    solve_upper(factor, weights);
+    multiply(a.transpose(), weights, free_z);
+  } else {
+    multiply(a.transpose(), r, free_z);
+    apply_inverse(a, mu, free_z);
   }
   multipliers_.setZero();
-  for (int i = 0; i < active_; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    multipliers_[active_row_[k]] = active_sign_[k] * active_multiplier_[i];
+  z_.head(unknowns_) = free_z;
+  multiply(d, z(), row_value_);
+  if ((row_value_.array() <= upper.array()).all() && (row_value_.array() >= lower.array()).all()) {
+    std::fill(active.begin(), active.end(), 0);
+    return true;
   }
-  if (!solved) {
-    shrink_into_bounds(d, lower, upper);
+  if (std::all_of(active.begin(), active.end(), [](signed char sign) { return sign == 0; })) {
+    gather(active);
+    settle(lower, upper, active);
   }
-  return solved;
-}
-
-/// The unconstrained minimum, and the inverse factor of the Hessian as the first basis.
-void BoundedLeastSquares::start(const Eigen::Ref<const Matrix>& a, const VectorArg& r, double mu) {
-  hessian_.setZero();
-  hessian_.diagonal().setConstant(mu);
-  hessian_.noalias() += a.transpose() * a;
-  const Eigen::LLT<Eigen::Ref<Matrix>> cholesky(hessian_);
-  basis_.setIdentity();
-  cholesky.matrixU().solveInPlace(basis_);
-  z_.noalias() = a.transpose() * r;
-  cholesky.solveInPlace(z_);
-  active_ = 0;
-}
-
-BoundedLeastSquares::Violation BoundedLeastSquares::worst_violation(const Vector& lower,
-                                                                    const Vector& upper) const {
-  Violation worst{.row = -1, .sign = 0.0, .value = kFeasibility};
-  for (Eigen::Index i = 0; i < row_value_.size(); ++i) {
-    if (row_value_[i] - upper[i] > worst.value) {
-      worst = {.row = i, .sign = 1.0, .value = row_value_[i] - upper[i]};
+  for (int round = 0; round < kRounds; ++round) {
+    gather(active);
+    if (!hold(a, mu, d, lower, upper)) {
+      break;
     }
-    if (lower[i] - row_value_[i] > worst.value) {
-      worst = {.row = i, .sign = -1.0, .value = lower[i] - row_value_[i]};
-    }
-  }
-  return worst;
-}
-
-/// Moves along the active rows until the violated one holds, dropping rows whose multiplier would change
-/// sign.
-bool BoundedLeastSquares::satisfy(const Violation& violation, const Matrix& d, const Vector& lower,
-                                  const Vector& upper) {
-  const auto n = static_cast<int>(z_.size());
-  const double bound = violation.sign > 0.0 ? upper[violation.row] : lower[violation.row];
-  double multiplier = 0.0;
-  while (iterations_left_-- > 0) {
-    // the row as an inequality normal . z >= ...: normal = -sign * d
-    direction_.noalias() = basis_.transpose() * d.row(violation.row).transpose();
-    direction_ *= -violation.sign;
-    const auto free = direction_.tail(n - active_);
-    const double curvature = free.squaredNorm();
-    step_.noalias() = basis_.rightCols(n - active_) * free;
-    auto dual_step = dual_step_.head(active_);
-    dual_step = direction_.head(active_);
-    triangle_.topLeftCorner(active_, active_).triangularView<Eigen::Upper>().solveInPlace(dual_step);
-
-    constexpr double infinite = std::numeric_limits<double>::infinity();
-    double partial = infinite;
-    int blocking = -1;
-    for (int i = 0; i < active_; ++i) {
-      if (dual_step[i] > 0.0 && active_multiplier_[i] < partial * dual_step[i]) {
-        partial = active_multiplier_[i] / dual_step[i];
-        blocking = i;
+    if (settle(lower, upper, active)) {
+      for (std::size_t i = 0; i < held_.size(); ++i) {
+        multipliers_[held_[i]] = held_multiplier_[static_cast<Eigen::Index>(i)];
       }
-    }
-    const double excess = violation.sign * (d.row(violation.row).dot(z_) - bound);
-    const bool dependent = curvature <= kDependence * direction_.squaredNorm();
-    const double full = dependent ? infinite : excess / curvature;
-    const double length = std::min(partial, full);
-    if (length == infinite) {
-      return false;  // no point satisfies the active rows and this one
-    }
-    if (!dependent) {
-      z_ += length * step_;
-    }
-    active_multiplier_.head(active_) -= length * dual_step;
-    multiplier += length;
-    if (full <= partial) {
-      activate(violation, multiplier);
       return true;
     }
-    deactivate(blocking);
   }
-  return false;
+  return fall_back(a, r, mu, d, lower, upper, active);
 }
 
-/// Appends a row: turns the null-space columns so that the row meets only the first of them.
-void BoundedLeastSquares::activate(const Violation& violation, double multiplier) {
-  Eigen::JacobiRotation<double> rotation;
-  for (auto j = static_cast<int>(z_.size()) - 1; j > active_; --j) {
-    double length = 0.0;
-    rotation.makeGivens(direction_[j - 1], direction_[j], &length);
-    direction_[j - 1] = length;
-    direction_[j] = 0.0;
-    basis_.applyOnTheRight(j - 1, j, rotation);
+/// Factorises the smaller of A A^T + mu I and A^T A + mu I.
+void BoundedLeastSquares::factorise(const Eigen::Ref<const Matrix>& a, double mu) {
+  by_rows_ = a.rows() < unknowns_;
+  const Eigen::Index size = by_rows_ ? a.rows() : unknowns_;
+  auto factor = factor_.topLeftCorner(size, size);
+  if (by_rows_) {
+    multiply(a, a.transpose(), factor);
+  } else {
+    multiply(a.transpose(), a, factor);
   }
-  triangle_.col(active_).head(active_ + 1) = direction_.head(active_ + 1);
-  active_multiplier_[active_] = multiplier;
-  const auto k = static_cast<std::size_t>(active_);
-  active_row_[k] = violation.row;
-  active_sign_[k] = violation.sign;
-  ++active_;
+  factor.diagonal().array() += mu;
+  factorise_in_place(factor);
 }
 
-/// Removes an active row and restores the triangle.
-void BoundedLeastSquares::deactivate(int position) {
-  for (int i = position; i + 1 < active_; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    active_row_[k] = active_row_[k + 1];
-    active_sign_[k] = active_sign_[k + 1];
-    active_multiplier_[i] = active_multiplier_[i + 1];
-    triangle_.col(i).head(active_) = triangle_.col(i + 1).head(active_);
+/// z <- (A^T A + mu I)^-1 z, by rows as (z - A^T (A A^T + mu I)^-1 A z) / mu.
+template <typename Out>
+void BoundedLeastSquares::apply_inverse(const Eigen::Ref<const Matrix>& a, double mu, Out&& z) {
+  if (!by_rows_) {
+    const auto factor = factor_.topLeftCorner(unknowns_, unknowns_);
+    solve_lower(factor, z);
+    solve_upper(factor, z);
+    return;
   }
-  --active_;
-  Eigen::JacobiRotation<double> rotation;
-  for (int i = position; i < active_; ++i) {
-    double length = 0.0;
-    rotation.makeGivens(triangle_(i, i), triangle_(i + 1, i), &length);
-    triangle_(i, i) = length;
-    triangle_(i + 1, i) = 0.0;
-    const int right = active_ - i - 1;
-    if (right > 0) {
-      triangle_.block(i, i + 1, 2, right).applyOnTheLeft(0, 1, rotation.adjoint());
+  const auto factor = factor_.topLeftCorner(a.rows(), a.rows());
+  auto weights = in_rows_.head(a.rows());
+  multiply(a, z, weights);
+  solve_lower(factor, weights);
+  solve_upper(factor, weights);
+  z -= a.transpose().lazyProduct(weights);
+  z /= mu;
+}
+
+void BoundedLeastSquares::gather(const ActiveRows& active) {
+  held_.clear();
+  held_sign_.clear();
+  for (std::size_t i = 0; i < active.size(); ++i) {
+    if (active[i] != 0) {
+      held_.push_back(static_cast<Eigen::Index>(i));
+      held_sign_.push_back(active[i]);
     }
-    basis_.applyOnTheRight(i, i + 1, rotation);
   }
 }
 
-void BoundedLeastSquares::shrink_into_bounds(const Matrix& d, const Vector& lower, const Vector& upper) {
-  row_value_.noalias() = d * z_;
-  double scale = 1.0;
+/// The minimum with the held rows at their bounds. False when they depend on each other.
+bool BoundedLeastSquares::hold(const Eigen::Ref<const Matrix>& a, double mu,
+                               const Eigen::Ref<const Matrix>& d, const Vector& lower, const Vector& upper) {
+  const auto count = static_cast<Eigen::Index>(held_.size());
+  if (count > unknowns_) {
+    return false;
+  }
+  auto response = response_.topLeftCorner(unknowns_, count);
+  auto schur = schur_.topLeftCorner(count, count);
+  auto multiplier = held_multiplier_.head(count);
+  double largest = 0.0;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Eigen::Index row = held_[static_cast<std::size_t>(i)];
+    auto column = response.col(i);
+    column = d.row(row).transpose();
+    apply_inverse(a, mu, column);
+    const double bound = held_sign_[static_cast<std::size_t>(i)] > 0 ? upper[row] : lower[row];
+    multiplier[i] = d.row(row).dot(free_z_.head(unknowns_)) - bound;
+    for (Eigen::Index k = i; k < count; ++k) {
+      schur(k, i) = d.row(held_[static_cast<std::size_t>(k)]).dot(column);
+    }
+    largest = std::max(largest, schur(i, i));
+  }
+  if (!factorise_in_place(schur, kDependence * largest)) {
+    return false;
+  }
+  solve_lower(schur, multiplier);
+  solve_upper(schur, multiplier);
+  auto now = z_.head(unknowns_);
+  now = free_z_.head(unknowns_);
+  now -= response.lazyProduct(multiplier);
+  multiply(d, now, row_value_);
+  return true;
+}
+
+/// Drops held rows that pull and adds rows that are violated; true when there are none.
+bool BoundedLeastSquares::settle(const Vector& lower, const Vector& upper, ActiveRows& active) {
+  bool settled = true;
+  std::fill(active.begin(), active.end(), 0);
   for (Eigen::Index i = 0; i < row_value_.size(); ++i) {
-    if (row_value_[i] > upper[i]) {
-      scale = std::min(scale, std::max(0.0, upper[i]) / row_value_[i]);
-    } else if (row_value_[i] < lower[i]) {
-      scale = std::min(scale, std::min(0.0, lower[i]) / row_value_[i]);
+    if (row_value_[i] > upper[i] + kFeasibility) {
+      active[static_cast<std::size_t>(i)] = 1;
+    } else if (row_value_[i] < lower[i] - kFeasibility) {
+      active[static_cast<std::size_t>(i)] = -1;
+    } else {
+      continue;
     }
+    settled = false;
   }
-  z_ *= scale;
+  for (std::size_t i = 0; i < held_.size(); ++i) {
+    const bool presses = held_sign_[i] * held_multiplier_[static_cast<Eigen::Index>(i)] >= 0.0;
+    active[static_cast<std::size_t>(held_[i])] = presses ? held_sign_[i] : 0;
+    settled = settled && presses;
+  }
+  return settled;
+}
+
+bool BoundedLeastSquares::fall_back(const Eigen::Ref<const Matrix>& a, const VectorArg& r, double mu,
+                                    const Eigen::Ref<const Matrix>& d, const Vector& lower,
+                                    const Vector& upper, ActiveRows& active) {
+  padded_d_.leftCols(unknowns_) = d;
+  padded_d_.rightCols(padded_d_.cols() - unknowns_).setZero();
+  const bool solved = dual_.solve(a, r, mu, padded_d_, lower, upper);
+  z_ = dual_.z();
+  multiply(d, z(), row_value_);
+  multipliers_ = dual_.multipliers();
+  for (std::size_t i = 0; i < active.size(); ++i) {
+    const double multiplier = multipliers_[static_cast<Eigen::Index>(i)];
+    active[i] = static_cast<signed char>((multiplier > 0.0) - (multiplier < 0.0));
+  }
+  return solved;
 }
 
 }  // namespace tope

@@ -5,6 +5,36 @@
 #include <algorithm>
 
 namespace tope {
+namespace {
+
+/// A polynomial of s in [0, 1], with its first and second derivative.
+struct Profile {
+  double value;
+  double slope;
+  double curvature;
+};
+
+// (1, 0) and (0, 1) at s = 0 in value and slope, at rest in zero at s = 1
+Profile cubic_error(double s) {
+  return {1.0 + s * s * (2.0 * s - 3.0), 6.0 * s * (s - 1.0), 6.0 * (2.0 * s - 1.0)};
+}
+Profile cubic_rate(double s) { return {s * (1.0 + s * (s - 2.0)), 1.0 + s * (3.0 * s - 4.0), 6.0 * s - 4.0}; }
+
+// (1, 0, 0), (0, 1, 0) and (0, 0, 1) at s = 0 in value, slope and curvature, at rest in zero at s = 1
+Profile quintic_error(double s) {
+  return {1.0 + s * s * s * (-10.0 + s * (15.0 - 6.0 * s)), s * s * (-30.0 + s * (60.0 - 30.0 * s)),
+          s * (-60.0 + s * (180.0 - 120.0 * s))};
+}
+Profile quintic_rate(double s) {
+  return {s * (1.0 + s * s * (-6.0 + s * (8.0 - 3.0 * s))), 1.0 + s * s * (-18.0 + s * (32.0 - 15.0 * s)),
+          s * (-36.0 + s * (96.0 - 60.0 * s))};
+}
+Profile quintic_acceleration(double s) {
+  return {0.5 * s * s * (1.0 + s * (-3.0 + s * (3.0 - s))), 0.5 * s * (2.0 + s * (-9.0 + s * (12.0 - 5.0 * s))),
+          0.5 * (2.0 + s * (-18.0 + s * (36.0 - 20.0 * s)))};
+}
+
+}  // namespace
 
 PredefinedTime::PredefinedTime(const Options& options) : options_(options) {
   require_positive("PredefinedTime: duration [s]", options.duration);
@@ -34,46 +64,54 @@ void PredefinedTime::plan(double t, double duration, const VectorArg& error, con
   initial_acceleration_ = acceleration;
 }
 
+double PredefinedTime::phase(double t) const {
+  return std::clamp((t - start_time_) / planned_duration_, 0.0, 1.0);
+}
+
 void PredefinedTime::rate(double t, const VectorArg& error, Eigen::Ref<Vector> rate) const {
+  const double s = phase(t);
   const double duration = planned_duration_;
-  const double s = std::clamp((t - start_time_) / duration, 0.0, 1.0);
-  const double a = 1.0 + s * s * (2.0 * s - 3.0);
-  const double a1 = 6.0 * s * (s - 1.0);
-  const double b = s * (1.0 + s * (s - 2.0));
-  const double b1 = 1.0 + s * (3.0 * s - 4.0);
-  rate = (a1 / duration + options_.gain * a) * initial_error_ +
-         (b1 + options_.gain * duration * b) * initial_rate_ - options_.gain * error;
+  const double k = options_.gain;
+  const Profile a = cubic_error(s);
+  const Profile b = cubic_rate(s);
+  // e_r' - k (e - e_r), collected by e0 and e0'
+  rate = (a.slope / duration + k * a.value) * initial_error_ +
+         (b.slope + k * duration * b.value) * initial_rate_ - k * error;
+}
+
+void PredefinedTime::acceleration(double t, const VectorArg& error, const VectorArg& error_rate,
+                                  Eigen::Ref<Vector> acceleration) const {
+  const double s = phase(t);
+  const double duration = planned_duration_;
+  const double k = options_.gain;
+  // e_r'' - 2 k (e' - e_r') - k^2 (e - e_r), collected by e0, e0' and e0''
+  const auto weight = [k, duration](const Profile& p) {
+    return p.curvature / (duration * duration) + 2.0 * k * p.slope / duration + k * k * p.value;
+  };
+  acceleration = weight(quintic_error(s)) * initial_error_ +
+                 duration * weight(quintic_rate(s)) * initial_rate_ +
+                 duration * duration * weight(quintic_acceleration(s)) * initial_acceleration_ -
+                 2.0 * k * error_rate - k * k * error;
+}
+
+bool PredefinedTime::off_plan(double t, const VectorArg& error, bool second_order) const {
+  constexpr double least = 1e-3;  // m or rad
+  constexpr double share = 0.02;  // of the initial error
+  const double s = phase(t);
+  const double duration = planned_duration_;
+  const double a = second_order ? quintic_error(s).value : cubic_error(s).value;
+  const double b = second_order ? quintic_rate(s).value : cubic_rate(s).value;
+  const double c = second_order ? quintic_acceleration(s).value : 0.0;
+  const double deviation = (error - a * initial_error_ - duration * b * initial_rate_ -
+                            duration * duration * c * initial_acceleration_)
+                               .norm();
+  return deviation > least + share * initial_error_.norm();
 }
 
 void PredefinedTime::resize(int size) {
   initial_error_.setZero(size);
   initial_rate_.setZero(size);
   initial_acceleration_.setZero(size);
-}
-
-void PredefinedTime::acceleration(double t, const VectorArg& error, const VectorArg& error_rate,
-                                  Eigen::Ref<Vector> acceleration) const {
-  const double duration = planned_duration_;
-  const double s = std::clamp((t - start_time_) / duration, 0.0, 1.0);
-  // each profile with its first and second derivative with respect to s
-  const double a = 1.0 + s * s * s * (-10.0 + s * (15.0 - 6.0 * s));
-  const double a1 = s * s * (-30.0 + s * (60.0 - 30.0 * s));
-  const double a2 = s * (-60.0 + s * (180.0 - 120.0 * s));
-  const double b = s * (1.0 + s * s * (-6.0 + s * (8.0 - 3.0 * s)));
-  const double b1 = 1.0 + s * s * (-18.0 + s * (32.0 - 15.0 * s));
-  const double b2 = s * (-36.0 + s * (96.0 - 60.0 * s));
-  const double c = 0.5 * s * s * (1.0 + s * (-3.0 + s * (3.0 - s)));
-  const double c1 = 0.5 * s * (2.0 + s * (-9.0 + s * (12.0 - 5.0 * s)));
-  const double c2 = 0.5 * (2.0 + s * (-18.0 + s * (36.0 - 20.0 * s)));
-
-  // acceleration = e_r'' - 2 k (e' - e_r') - k^2 (e - e_r), collected by e0, e0' and e0''
-  const double k = options_.gain;
-  const auto weight = [k, duration](double p, double p1, double p2) {
-    return p2 / (duration * duration) + 2.0 * k * p1 / duration + k * k * p;
-  };
-  acceleration = weight(a, a1, a2) * initial_error_ + duration * weight(b, b1, b2) * initial_rate_ +
-                 duration * duration * weight(c, c1, c2) * initial_acceleration_ - 2.0 * k * error_rate -
-                 k * k * error;
 }
 
 }  // namespace tope

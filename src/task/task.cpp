@@ -80,7 +80,9 @@ void Task::observe(const Vector& motion) {
   const double missing = (asked - served_).norm();
   const double size = asked.norm();
   const bool was_held = held_;
-  held_ = missing > (1.0 - (was_held ? released_above : held_below)) * size + kNothing;
+  const bool underserved = missing > (1.0 - (was_held ? released_above : held_below)) * size + kNothing;
+  held_ = underserved && std::visit([&](const auto& r) { return r.off_plan(last_time_, error_, second_order_); },
+                                    reference_);
   released_ = replans() && was_held && !held_;
 }
 

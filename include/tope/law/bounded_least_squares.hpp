@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tope/common/types.hpp>
+#include <tope/law/dual_active_set.hpp>
 
 #include <vector>
 
@@ -9,50 +9,60 @@ namespace tope {
 /// Solves min |A z - r|^2 + mu |z|^2 subject to lower <= D z <= upper, for mu > 0 and bounds with
 /// lower <= 0 <= upper or any other set that is not empty.
 ///
-/// The dual active-set method of Goldfarb and Idnani (1983), on two-sided rows. Never allocates. When the
-/// iteration bound is reached the result is scaled towards z = 0 until it keeps the bounds, if z = 0 keeps
-/// them.
+/// A primal-dual active set (Hintermueller, Ito, Kunisch 2002): hold a guess of the active rows as equalities, then drop
+/// those whose multiplier pulls, add those that are violated, and so on until nothing changes. With the active rows of
+/// the last cycle as the guess one round is usual. As it may cycle, after a few rounds the problem goes to a dual
+/// active-set method, which cannot. Never allocates.
 class BoundedLeastSquares {
  public:
+  /// For each row (p): +1 at its upper bound, -1 at its lower one, 0 inactive.
+  using ActiveRows = std::vector<signed char>;
+
+  /// For up to n unknowns and exactly `constraints` rows.
   BoundedLeastSquares(int n, int constraints);
 
-  /// A (m x n), r (m), D (p x n), lower and upper (p). Returns false when it was cut off.
-  bool solve(const Eigen::Ref<const Matrix>& a, const VectorArg& r, double mu, const Matrix& d,
-             const Vector& lower, const Vector& upper);
+  /// A (m x d), r (m), D (p x d), lower and upper (p), d <= n. `active` (p): in, a guess; out, the active rows. Returns
+  /// false when it was cut off: z is then scaled towards zero until it keeps the bounds, if z = 0 keeps them.
+  bool solve(const Eigen::Ref<const Matrix>& a, const VectorArg& r, double mu,
+             const Eigen::Ref<const Matrix>& d, const Vector& lower, const Vector& upper, ActiveRows& active);
+  /// The same without a guess.
+  bool solve(const Eigen::Ref<const Matrix>& a, const VectorArg& r, double mu,
+             const Eigen::Ref<const Matrix>& d, const Vector& lower, const Vector& upper);
 
-  const Vector& z() const { return z_; }
+  auto z() const { return z_.head(unknowns_); }            ///< (d)
+  const Vector& row_values() const { return row_value_; }  ///< D z (p)
   /// Lagrange multiplier of each row (p) in the half-squared problem: positive presses on the upper bound,
   /// negative on the lower one, zero elsewhere.
   const Vector& multipliers() const { return multipliers_; }
 
  private:
-  struct Violation {
-    Eigen::Index row = -1;
-    double sign = 0.0;   // +1 upper, -1 lower
-    double value = 0.0;  // how far beyond the bound
-  };
+  void factorise(const Eigen::Ref<const Matrix>& a, double mu);
+  template <typename Out>
+  void apply_inverse(const Eigen::Ref<const Matrix>& a, double mu, Out&& z);
+  bool hold(const Eigen::Ref<const Matrix>& a, double mu, const Eigen::Ref<const Matrix>& d,
+            const Vector& lower, const Vector& upper);
+  bool settle(const Vector& lower, const Vector& upper, ActiveRows& active);
+  void gather(const ActiveRows& active);
+  bool fall_back(const Eigen::Ref<const Matrix>& a, const VectorArg& r, double mu,
+                 const Eigen::Ref<const Matrix>& d, const Vector& lower, const Vector& upper,
+                 ActiveRows& active);
 
-  void start(const Eigen::Ref<const Matrix>& a, const VectorArg& r, double mu);
-  Violation worst_violation(const Vector& lower, const Vector& upper) const;
-  bool satisfy(const Violation& violation, const Matrix& d, const Vector& lower, const Vector& upper);
-  void activate(const Violation& violation, double multiplier);
-  void deactivate(int position);
-  void shrink_into_bounds(const Matrix& d, const Vector& lower, const Vector& upper);
-
-  Matrix hessian_;   // A^T A + mu I, then its Cholesky factor L
-  Matrix basis_;     // L^-T Q: the first active_ columns span the active rows, the others their null space
-  Matrix triangle_;  // R of the active rows
-  Vector z_;
-  Vector direction_;  // basis^T normal (n)
-  Vector step_;       // primal step (n)
-  Vector dual_step_;  // change of the active multipliers (n)
-  Vector active_multiplier_;
-  std::vector<Eigen::Index> active_row_;
-  std::vector<double> active_sign_;
+  int unknowns_ = 0;      // d
+  bool by_rows_ = false;  // factor_ is of A A^T + mu I (m x m), not of A^T A + mu I (d x d)
+  Matrix factor_;         // lower Cholesky factor (n x n)
+  Vector free_z_;         // minimum without bounds (n)
+  Vector z_;              // (n)
+  Vector in_rows_;        // A z (n)
+  Matrix response_;       // column i: H^-1 d_i^T of held row i (n x n)
+  Matrix schur_;          // D_held H^-1 D_held^T, then its factor (n x n)
+  Vector held_multiplier_;
+  std::vector<Eigen::Index> held_;  // rows held as equalities
+  std::vector<signed char> held_sign_;
   Vector multipliers_;
   Vector row_value_;  // D z
-  int active_ = 0;
-  int iterations_left_ = 0;
+  DualActiveSet dual_;
+  Matrix padded_d_;  // D with zero columns, for the dual method (p x n)
+  ActiveRows no_guess_;
 };
 
 }  // namespace tope

@@ -41,28 +41,41 @@ class Unilateral final : public StackLaw {
   void solve(const Stack& stack, const Selection& selection, Solution& solution) override;
 
  private:
+  /// Columns span the directions still open: M up to an orthonormal change of z.
+  auto open() const { return open_.leftCols(open_count_); }
+
+  void solve_limits(const Stack& stack, Solution& solution);
+  void solve_level(std::size_t position, Solution& solution);
   double squared_damping(double squared_residual) const;
-  void set_bounds(const Stack& stack, int level, const Vector& y);
+  void set_bounds(const Stack& stack, int level);
   bool all_directions_clear();
   void lock_fully();
-  void lock_gradually();
+  void lock_gradually(const Stack& stack);
+  void turn_open_basis(int rank);
 
   Options options_;
   LevelRows rows_;
   BoundedLeastSquares solver_;
   SymmetricEigen eigen_;
-  Matrix open_;         // M (n x n): directions still open
-  Matrix task_;         // A M (m x n)
+  int open_count_ = 0;  // d
+  bool whole_ = true;   // M is the identity
+  Matrix open_;         // M (n x d)
+  Matrix next_open_;
+  Matrix motion_;  // T M (n x d)
+  Matrix next_motion_;
+  Matrix task_;         // A M (m x d)
   Matrix task_gram_;    // A M M^T A^T (m x m)
   Matrix factor_;       // (m x m)
-  Matrix turned_task_;  // rows of A M along its singular vectors (m x n)
+  Matrix turned_task_;  // rows of A M along its singular vectors (m x d), or its Householder vectors (d x m)
   Matrix open_task_;    // M M^T A^T, column-weighted (n x m)
-  Matrix motion_;       // T M (n x n)
+  Matrix turn_;         // orthonormal basis of what A M leaves (d x (d - m))
+  Vector reflector_scale_;
   Vector residual_;     // (m)
   Vector motion_at_y_;  // T y (n)
   Vector lower_;
   Vector upper_;
-  Matrix no_rows_;  // 0 x n: level 0 has no task
+  std::vector<BoundedLeastSquares::ActiveRows> active_;  // of the last cycle, for each level
+  Matrix no_rows_;                                       // 0 x n: level 0 has no task
   Vector no_residual_;
 };
 

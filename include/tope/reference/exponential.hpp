@@ -30,6 +30,7 @@ class Exponential {
   /// Desired acceleration of the error (m) at time t [s], given the error and its rate.
   void acceleration(double t, const VectorArg& error, const VectorArg& error_rate,
                     Eigen::Ref<Vector> acceleration) const;
+  bool off_plan(double /*t*/, const VectorArg& /*error*/, bool /*second_order*/) const { return false; }
   /// Seconds from the start to the promised arrival: none.
   std::optional<double> duration() const { return std::nullopt; }
   double gain() const { return options_.gain; }  ///< [1/s]

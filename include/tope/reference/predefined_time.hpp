@@ -42,11 +42,14 @@ class PredefinedTime {
   /// Desired acceleration of the error (m) at time t [s], given the error and its rate.
   void acceleration(double t, const VectorArg& error, const VectorArg& error_rate,
                     Eigen::Ref<Vector> acceleration) const;
+  /// True where the error (m) at time t [s] is off its plan by more than 2 % of where it began, and 1 mm or mrad.
+  bool off_plan(double t, const VectorArg& error, bool second_order) const;
   std::optional<double> duration() const { return options_.duration; }
   double gain() const { return options_.gain; }  ///< [1/s]
   void resize(int size);
 
  private:
+  double phase(double t) const;  // s
   void plan(double t, double duration, const VectorArg& error, const VectorArg& rate,
             const VectorArg& acceleration);
 

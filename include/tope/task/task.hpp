@@ -42,7 +42,7 @@ class Task {
   /// Tells the task which motion the joints were commanded to after all (nv): velocities, or accelerations of second
   /// order. Notes whether that holds the task back; on release, a reference that can plans anew.
   void observe(const Vector& motion);
-  /// True while the task gets less than half of what it asks for, so that its promised time does not hold.
+  /// True while the task is off its plan and gets less than half of what it asks for: its promised time does not hold.
   bool held() const { return held_; }
   /// Lets the next update() start the reference anew.
   void restart();
