@@ -9,18 +9,25 @@ Chain::Chain(const Stack& stack) : selection_(stack), part_(stack.size()) {
 }
 
 void Chain::solve(const Stack& stack, const Vector& limit_activation, StackLaw& law, Solution& solution) {
-  const int n = stack.size();
   elements_.clear();
-  for (int j = 0; j < n; ++j) {
-    elements_.push_back({limit_activation[j], j});
+  const auto classify = [this](double activation, char& selected) {
+    selected = activation >= 1.0 ? 1 : 0;
+    if (activation > 0.0 && activation < 1.0) {
+      elements_.push_back({activation, &selected});
+    }
+  };
+  for (std::size_t j = 0; j < selection_.limits.size(); ++j) {
+    classify(limit_activation[static_cast<Eigen::Index>(j)], selection_.limits[j]);
   }
   for (std::size_t i = 0; i < stack.tasks.size(); ++i) {
-    elements_.push_back({stack.tasks[i].activation, n + static_cast<int>(i)});
+    classify(stack.tasks[i].activation, selection_.tasks[i]);
+  }
+  if (elements_.empty()) {
+    law.solve(stack, selection_, solution);
+    return;
   }
   std::sort(elements_.begin(), elements_.end(),
             [](const Element& a, const Element& b) { return a.activation > b.activation; });
-  std::fill(selection_.limits.begin(), selection_.limits.end(), 0);
-  std::fill(selection_.tasks.begin(), selection_.tasks.end(), 0);
 
   solution.set_zero();
   double current = 1.0;
@@ -33,11 +40,7 @@ void Chain::solve(const Stack& stack, const Vector& limit_activation, StackLaw& 
     }
     current = next;
     for (; element != elements_.end() && element->activation == current; ++element) {
-      if (element->index < n) {
-        selection_.limits[static_cast<std::size_t>(element->index)] = 1;
-      } else {
-        selection_.tasks[static_cast<std::size_t>(element->index - n)] = 1;
-      }
+      *element->selected = 1;
     }
   }
 }

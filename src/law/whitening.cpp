@@ -1,4 +1,5 @@
 #include <tope/common/error.hpp>
+#include <tope/law/small_cholesky.hpp>
 #include <tope/law/whitening.hpp>
 
 #include <Eigen/Cholesky>
@@ -13,6 +14,7 @@ Whitening Whitening::velocity(const Matrix& weight) {
   Whitening whitening;
   whitening.command_ = cholesky.matrixL();
   whitening.motion_ = whitening.command_;
+  whitening.identity_ = weight.isIdentity(0.0);
   return whitening;
 }
 
@@ -25,10 +27,15 @@ Whitening Whitening::torque(int n) {
 
 void Whitening::set_mass_matrix(const Matrix& mass_matrix) {
   command_ = mass_matrix;
-  const Eigen::LLT<Eigen::Ref<Matrix>> cholesky(command_);
-  motion_.setIdentity();
-  cholesky.matrixU().solveInPlace(motion_);
+  factorise_in_place(command_);
   command_.triangularView<Eigen::StrictlyUpper>().setZero();
+  // T = L^-T is upper triangular: column j takes the first j + 1 rows alone
+  const Eigen::Index n = command_.rows();
+  motion_.setZero();
+  for (Eigen::Index j = 0; j < n; ++j) {
+    motion_(j, j) = 1.0;
+    solve_upper(command_.topLeftCorner(j + 1, j + 1), motion_.col(j).head(j + 1));
+  }
 }
 
 void Whitening::from_command(const Vector& u, Vector& y) const {

@@ -30,7 +30,8 @@ Profile quintic_rate(double s) {
           s * (-36.0 + s * (96.0 - 60.0 * s))};
 }
 Profile quintic_acceleration(double s) {
-  return {0.5 * s * s * (1.0 + s * (-3.0 + s * (3.0 - s))), 0.5 * s * (2.0 + s * (-9.0 + s * (12.0 - 5.0 * s))),
+  return {0.5 * s * s * (1.0 + s * (-3.0 + s * (3.0 - s))),
+          0.5 * s * (2.0 + s * (-9.0 + s * (12.0 - 5.0 * s))),
           0.5 * (2.0 + s * (-18.0 + s * (36.0 - 20.0 * s)))};
 }
 

@@ -5,7 +5,6 @@
 #include <pinocchio/algorithm/crba.hpp>
 #include <pinocchio/algorithm/frames.hpp>
 #include <pinocchio/algorithm/jacobian.hpp>
-#include <pinocchio/algorithm/kinematics.hpp>
 #include <pinocchio/algorithm/rnea.hpp>
 
 namespace tope {
@@ -16,17 +15,34 @@ struct RobotTerms::Scratch {
         data(model()),
         q(Vector::Zero(robot.nq())),
         v(Vector::Zero(robot.nv())),
-        no_acceleration(Vector::Zero(robot.nv())),
-        mass_matrix(Matrix::Zero(robot.nv(), robot.nv())) {}
+        mass_matrix(Matrix::Zero(robot.nv(), robot.nv())),
+        jacobian(Matrix::Zero(6, robot.nv())) {}
 
   const pinocchio::Model& model() const { return robot.model().model; }
+
+  const pinocchio::Frame& frame(int index) const { return model().frames[static_cast<std::size_t>(index)]; }
+
+  /// Makes `world_T_frame` and `jacobian` those of a frame; tasks on one frame share them.
+  void select(int index) {
+    if (index == selected) {
+      return;
+    }
+    const pinocchio::Frame& chosen = frame(index);
+    world_T_frame = data.oMi[chosen.parentJoint] * chosen.placement;
+    jacobian.setZero();
+    pinocchio::getFrameJacobian(model(), data, static_cast<pinocchio::FrameIndex>(index),
+                                pinocchio::LOCAL_WORLD_ALIGNED, jacobian);
+    selected = index;
+  }
 
   Robot robot;  // keeps the shared model alive
   pinocchio::Data data;
   Vector q;
   Vector v;
-  Vector no_acceleration;
   Matrix mass_matrix;
+  int selected = -1;
+  pinocchio::SE3 world_T_frame;
+  Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian;
 };
 
 RobotTerms::RobotTerms(const Robot& robot) : scratch_(std::make_unique<Scratch>(robot)) {
@@ -39,48 +55,56 @@ RobotTerms& RobotTerms::operator=(RobotTerms&&) noexcept = default;
 void RobotTerms::update(const VectorArg& q, const VectorArg& v) {
   scratch_->q = q;
   scratch_->v = v;
+  scratch_->selected = -1;
   pinocchio::computeJointJacobians(scratch_->model(), scratch_->data, scratch_->q);
-  pinocchio::updateFramePlacements(scratch_->model(), scratch_->data);
 }
 
 void RobotTerms::update_dynamics(const VectorArg& q, const VectorArg& v) {
   Scratch& s = *scratch_;
   s.q = q;
   s.v = v;
-  pinocchio::crba(s.model(), s.data, s.q, pinocchio::Convention::WORLD);
+  s.selected = -1;
+  pinocchio::crba(s.model(), s.data, s.q, pinocchio::Convention::WORLD);  // and the joint Jacobians
   s.mass_matrix = s.data.M.selfadjointView<Eigen::Upper>();  // crba fills the upper triangle alone
   pinocchio::nonLinearEffects(s.model(), s.data, s.q, s.v);
-  // last, so that the accelerations in `data` are those without any of the joints'
-  pinocchio::forwardKinematics(s.model(), s.data, s.q, s.v, s.no_acceleration);
-  pinocchio::computeJointJacobians(s.model(), s.data);
-  pinocchio::updateFramePlacements(s.model(), s.data);
 }
 
 const Matrix& RobotTerms::mass_matrix() const { return scratch_->mass_matrix; }
 const Vector& RobotTerms::bias() const { return scratch_->data.nle; }
 
 Eigen::Matrix<double, 6, 1> RobotTerms::frame_drift(int frame) const {
-  return pinocchio::getFrameClassicalAcceleration(scratch_->model(), scratch_->data,
-                                                  static_cast<pinocchio::FrameIndex>(frame),
-                                                  pinocchio::LOCAL_WORLD_ALIGNED)
-      .toVector();
+  Scratch& s = *scratch_;
+  s.select(frame);
+  const pinocchio::Frame& chosen = s.frame(frame);
+  const pinocchio::JointIndex joint = chosen.parentJoint;
+  // a_gf of nonLinearEffects is the acceleration without any of the joints', less gravity
+  const pinocchio::Motion joint_acceleration =
+      s.data.a_gf[joint] + s.data.oMi[joint].actInv(s.model().gravity);
+  const pinocchio::Motion acceleration = chosen.placement.actInv(joint_acceleration);
+  const pinocchio::Motion velocity = chosen.placement.actInv(s.data.v[joint]);
+  const Matrix3& rotation = s.world_T_frame.rotation();
+  Eigen::Matrix<double, 6, 1> drift;
+  drift.head<3>() = rotation * (acceleration.linear() + velocity.angular().cross(velocity.linear()));
+  drift.tail<3>() = rotation * acceleration.angular();
+  return drift;
 }
 
 const Vector& RobotTerms::position() const { return scratch_->q; }
 const Vector& RobotTerms::velocity() const { return scratch_->v; }
 
-const Matrix3& RobotTerms::frame_rotation(int frame) const {
-  return scratch_->data.oMf[static_cast<std::size_t>(frame)].rotation();
+Matrix3 RobotTerms::frame_rotation(int frame) const {
+  scratch_->select(frame);
+  return scratch_->world_T_frame.rotation();
 }
 
-const Vector3& RobotTerms::frame_position(int frame) const {
-  return scratch_->data.oMf[static_cast<std::size_t>(frame)].translation();
+Vector3 RobotTerms::frame_position(int frame) const {
+  scratch_->select(frame);
+  return scratch_->world_T_frame.translation();
 }
 
 void RobotTerms::frame_jacobian(int frame, Eigen::Ref<Matrix> jacobian) const {
-  jacobian.setZero();
-  pinocchio::getFrameJacobian(scratch_->model(), scratch_->data, static_cast<pinocchio::FrameIndex>(frame),
-                              pinocchio::LOCAL_WORLD_ALIGNED, jacobian);
+  scratch_->select(frame);
+  jacobian = scratch_->jacobian;
 }
 
 }  // namespace tope

@@ -81,8 +81,9 @@ void Task::observe(const Vector& motion) {
   const double size = asked.norm();
   const bool was_held = held_;
   const bool underserved = missing > (1.0 - (was_held ? released_above : held_below)) * size + kNothing;
-  held_ = underserved && std::visit([&](const auto& r) { return r.off_plan(last_time_, error_, second_order_); },
-                                    reference_);
+  held_ =
+      underserved &&
+      std::visit([&](const auto& r) { return r.off_plan(last_time_, error_, second_order_); }, reference_);
   released_ = replans() && was_held && !held_;
 }
 

@@ -31,7 +31,7 @@ Vector start() {
 
 void add_tasks(Controller& controller, const Robot& robot, double duration) {
   const Matrix3 goal = Eigen::Quaterniond(0.0397, 0.9811, 0.1867, -0.0322).normalized().toRotationMatrix();
-  const PredefinedTime reference({.duration = duration, .gain = 5.0});
+  const PredefinedTime reference({.duration = duration, .gain = 5.0, .replan_over = 0.5});
   controller.add(1, FrameOrientation(robot, "ee", goal, reference));
   controller.add(2, FramePosition(robot, "ee", Vector3(0.640, 0.105, 0.068), reference));
   controller.add(3, Damping(robot));

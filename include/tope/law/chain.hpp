@@ -20,9 +20,9 @@ class Chain {
   void solve(const Stack& stack, const Vector& limit_activation, StackLaw& law, Solution& solution);
 
  private:
-  struct Element {
+  struct Element {  // in transition
     double activation;
-    int index;  // limit rows first, then tasks
+    char* selected;
   };
 
   Selection selection_;

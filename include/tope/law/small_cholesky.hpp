@@ -2,15 +2,23 @@
 
 #include <tope/common/types.hpp>
 
+#include <Eigen/Cholesky>
+
 #include <cmath>
 
 namespace tope {
 
+/// From this size on Eigen's blocked algorithms pay; the usual three to eight rows are quicker by plain loops.
+inline constexpr Eigen::Index large_factor = 24;
+
 /// Replaces the lower triangle of `m` by its Cholesky factor L, M = L L^T. False, with `m` spoilt, when a pivot falls
-/// to `least` or below. Plain loops: the matrices have three to eight rows, where Eigen's blocks do not pay.
+/// to `least` or below.
 template <typename Derived>
 bool factorise_in_place(Eigen::MatrixBase<Derived>& m, double least = 0.0) {
   const Eigen::Index n = m.rows();
+  if (n >= large_factor && least == 0.0) {
+    return Eigen::LLT<Eigen::Ref<Matrix>>(m.derived()).info() == Eigen::Success;
+  }
   for (Eigen::Index j = 0; j < n; ++j) {
     double pivot = m(j, j);
     for (Eigen::Index k = 0; k < j; ++k) {
@@ -36,6 +44,10 @@ bool factorise_in_place(Eigen::MatrixBase<Derived>& m, double least = 0.0) {
 /// x <- L^-1 x.
 template <typename Factor, typename X>
 void solve_lower(const Factor& l, X&& x) {
+  if (l.rows() >= large_factor) {
+    l.template triangularView<Eigen::Lower>().solveInPlace(x);
+    return;
+  }
   for (Eigen::Index i = 0; i < l.rows(); ++i) {
     double value = x[i];
     for (Eigen::Index k = 0; k < i; ++k) {
@@ -48,6 +60,10 @@ void solve_lower(const Factor& l, X&& x) {
 /// x <- L^-T x.
 template <typename Factor, typename X>
 void solve_upper(const Factor& l, X&& x) {
+  if (l.rows() >= large_factor) {
+    l.transpose().template triangularView<Eigen::Upper>().solveInPlace(x);
+    return;
+  }
   for (Eigen::Index i = l.rows() - 1; i >= 0; --i) {
     double value = x[i];
     for (Eigen::Index k = i + 1; k < l.rows(); ++k) {

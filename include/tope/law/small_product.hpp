@@ -8,7 +8,7 @@ namespace tope {
 /// them into blocks; from some dozens of joints on that pays.
 template <typename A, typename B, typename Out>
 void multiply(const A& a, const B& b, Out&& out) {
-  constexpr Eigen::Index large = 32 * 32 * 32;
+  constexpr Eigen::Index large = 32768;  // products of numbers: three matrices of 32 rows
   if (a.rows() * a.cols() * b.cols() < large) {
     out = a.lazyProduct(b);
   } else {

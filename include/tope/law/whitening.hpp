@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tope/common/types.hpp>
+#include <tope/law/small_product.hpp>
 
 namespace tope {
 
@@ -23,13 +24,20 @@ class Whitening {
     return command_;
   }  ///< L (n x n): command = L y (plus the bias, in torque mode)
   /// A = J T (m x n).
-  void rows(const Matrix& jacobian, Matrix& a) const { a.noalias() = jacobian * motion_; }
+  void rows(const Matrix& jacobian, Matrix& a) const {
+    if (identity_) {
+      a = jacobian;
+    } else {
+      multiply(jacobian, motion_, a);
+    }
+  }
   /// L^-1 u (n): the y that would give the command u.
   void from_command(const Vector& u, Vector& y) const;
 
  private:
   Matrix motion_;
   Matrix command_;
+  bool identity_ = false;
 };
 
 }  // namespace tope

@@ -27,8 +27,8 @@ class RobotTerms {
   const Vector& velocity() const;  ///< v of the last update (nv)
 
   /// Placement of a frame in the world.
-  const Matrix3& frame_rotation(int frame) const;
-  const Vector3& frame_position(int frame) const;
+  Matrix3 frame_rotation(int frame) const;
+  Vector3 frame_position(int frame) const;
 
   /// Jacobian (6 x nv) of a frame: linear velocity of its origin over angular velocity, both along the axes
   /// of the world.
