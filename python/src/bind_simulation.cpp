@@ -32,7 +32,7 @@ nb::dict describe_joint(const Robot& robot, const JointLimits& limits, const Vec
   return entry;
 }
 
-nb::dict describe_task(const ScenarioTask& task) {
+nb::dict describe_task(const Robot& robot, const ScenarioTask& task) {
   nb::dict entry;
   entry["name"] = task.name;
   entry["type"] = std::string(task.task->type());
@@ -40,6 +40,17 @@ nb::dict describe_task(const ScenarioTask& task) {
   entry["size"] = task.task->size();
   entry["unit"] = std::string(task.task->error_unit());
   entry["goal_time"] = optional_number(task.task->duration());
+  entry["gain"] = task.task->gain();
+  const auto goal = task.task->frame_goal(0.0);
+  entry["frame"] = goal ? nb::cast(robot.frame_name(goal->frame)) : nb::none();
+  return entry;
+}
+
+nb::dict describe_robot(const Scenario& scenario) {
+  nb::dict entry;
+  entry["name"] = scenario.robot->name();
+  entry["urdf"] = scenario.urdf.string();
+  entry["locked_joints"] = nb::cast(scenario.locked_joints);
   return entry;
 }
 
@@ -51,7 +62,7 @@ nb::dict describe_scenario(const Scenario& scenario) {
   }
   nb::list tasks;
   for (const ScenarioTask& task : scenario.tasks) {
-    tasks.append(describe_task(task));
+    tasks.append(describe_task(*scenario.robot, task));
   }
   nb::dict entry;
   entry["name"] = scenario.name;
@@ -62,6 +73,7 @@ nb::dict describe_scenario(const Scenario& scenario) {
   entry["method"] = to_string(scenario.controller.limits.method);
   entry["dt"] = scenario.controller.dt;
   entry["duration"] = scenario.duration;
+  entry["robot"] = describe_robot(scenario);
   entry["joints"] = joints;
   entry["tasks"] = tasks;
   entry["notices"] = nb::cast(scenario.notices);
@@ -139,6 +151,7 @@ nb::dict simulate(const Scenario& scenario, const std::optional<std::filesystem:
   result["columns"] = nb::cast(simulation.log().columns());
   result["data"] = log_array(simulation.log());
   result["status"] = nb::cast(simulation.log().status());
+  result["cycle_time_us"] = nb::cast(simulation.cycle_times());
   return result;
 }
 

@@ -2,6 +2,7 @@
 
 #include <nanobind/eigen/dense.h>
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
@@ -16,5 +17,6 @@ void bind_robot(nanobind::module_& module);
 void bind_tasks(nanobind::module_& module);
 void bind_controller(nanobind::module_& module);
 void bind_simulation(nanobind::module_& module);
+void bind_live(nanobind::module_& module);
 
 }  // namespace tope::python

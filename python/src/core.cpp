@@ -12,4 +12,5 @@ NB_MODULE(_core, module) {
   tope::python::bind_tasks(module);
   tope::python::bind_controller(module);
   tope::python::bind_simulation(module);
+  tope::python::bind_live(module);
 }

@@ -23,6 +23,7 @@ from tope._core import (
     UnilateralOptions,
 )
 from tope.compare import compare
+from tope.export import export
 from tope.runs import Run
 from tope.simulation import load_run, load_scenario, simulate
 
@@ -51,6 +52,7 @@ __all__ = [
     "TaskHandle",
     "UnilateralOptions",
     "compare",
+    "export",
     "load_run",
     "load_scenario",
     "simulate",

@@ -196,3 +196,69 @@ def load_scenario(path: str | os.PathLike, overrides: Mapping[str, str] = {}) ->
 def simulate(scenario: Scenario, out: str | os.PathLike | None = None, progress: Callable[[float], None] | None = None, keep_log: bool = True) -> dict: ...
 
 def check(scenario: Scenario) -> list: ...
+
+class LiveSimulation:
+    """
+    A scenario that never ends and that can be changed while it runs. For one thread.
+    """
+
+    def __init__(self, scenario: Scenario) -> None: ...
+
+    def advance(self, seconds: float) -> None:
+        """
+        Runs the cycles that fit into so many seconds and what an earlier call left over.
+        """
+
+    def put_goal(self, frame: str, position: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], wxyz: Sequence[float]) -> None:
+        """Puts the goal of a frame to a position [m] and a unit quaternion."""
+
+    def adopt(self, scenario: Scenario) -> None:
+        """
+        Goes on under another reading of the same scenario file; ConfigError leaves all as it was.
+        """
+
+    def insert(self, task: str, *, over: float) -> None:
+        """Adds a task that was removed, over so many seconds."""
+
+    def remove(self, task: str, *, over: float) -> None:
+        """Removes a task, over so many seconds."""
+
+    @property
+    def time(self) -> float: ...
+
+    @property
+    def position(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]: ...
+
+    @property
+    def velocity(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]: ...
+
+    @property
+    def command(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]: ...
+
+    @property
+    def upper_activation(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]: ...
+
+    @property
+    def lower_activation(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]: ...
+
+    @property
+    def status(self) -> str: ...
+
+    @property
+    def status_text(self) -> str: ...
+
+    @property
+    def limit_gain(self) -> float:
+        """
+        The gain that limits are kept with [1/s], chosen by the controller if the scenario does not say.
+        """
+
+    @property
+    def errors(self) -> dict:
+        """
+        Norm of each task's error [m or rad]; None for a task that is not present.
+        """
+
+    @property
+    def goals(self) -> dict[str, tuple[Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], list[float]]]:
+        """Position [m] and quaternion (w, x, y, z) of the goal of each frame."""

@@ -1,4 +1,4 @@
-"""The command line: tope run, tope compare, tope check."""
+"""The command line: tope run, tope compare, tope check, tope play, tope export."""
 
 from __future__ import annotations
 
@@ -15,13 +15,15 @@ from rich.progress import Progress as ProgressBar
 from rich.table import Table
 from rich.text import Text
 
-from tope import _core, words
+from tope import _core, extras, words
 from tope.compare import compare as run_comparison
 from tope.compare import known_methods
+from tope.export import export as export_run
 from tope.runs import finite
 from tope.simulation import Progress
 from tope.simulation import simulate as run_scenario
 
+LOCAL = "127.0.0.1"
 PIPED_WIDTH = 200  # columns of a table that does not go to a terminal
 
 app = typer.Typer(
@@ -130,6 +132,46 @@ def check(
         print_inequalities(console, inequalities)
     if not all(each["ok"] for each in inequalities):
         raise typer.Exit(1)
+
+
+@app.command()
+def export(
+    folder: Annotated[Path, typer.Argument(metavar="RUN", help="The folder that a run wrote.")],
+    to: Annotated[str, typer.Option("--to", metavar="FORMAT", help="mcap (Foxglove, PlotJuggler) or rerun.")],
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="FILE", help="The file to write; in RUN by default.")
+    ] = None,
+) -> None:
+    """Write a run in the format of another viewer.
+
+    mcap: ROS 2 messages, for Foxglove and PlotJuggler. rerun: a recording for Rerun.
+    """
+    file = export_run(folder, to=to, out=out)
+    output().print(pairs([("Written to", str(file))]))
+
+
+@app.command()
+def play(
+    scenario: Scenario,
+    sets: Set = None,
+    host: Annotated[
+        str, typer.Option("--host", help="The address to serve; others than you may use it.")
+    ] = LOCAL,
+    port: Annotated[int, typer.Option("--port", help="The port to serve.")] = 8080,
+) -> None:
+    """Play with a scenario in the browser.
+
+    Drag the goal, push the obstacle, pull limits in, change method, buffer and gains, insert and remove tasks
+    while the controller runs at its real rate. Ends with Ctrl-C.
+    """
+    console = output()
+    extras.load("tope.play", "playing", "play").play(
+        str(scenario),
+        overrides(sets),
+        host=host,
+        port=port,
+        ready=lambda address: console.print(pairs([("Open", address), ("End", "Ctrl-C")])),
+    )
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

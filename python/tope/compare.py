@@ -8,6 +8,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
+
 from tope import _core
 from tope.report import write_comparison_report
 from tope.runs import Run, Summary, finite, write_json
@@ -90,7 +92,7 @@ def run_twice(entrant: Contestant, progress: Progress | None) -> Run:
     result = _core.simulate(loaded, None, portion(progress, 0, part), True)
     finer = _core.load_scenario(entrant.scenario, {**entrant.overrides, "dt": repr(dt / FINER)})
     fine = _core.simulate(finer, None, portion(progress, part, 1 - part), False)
-    run = Run(finite(result["summary"]), log_of(result))
+    run = Run(finite(result["summary"]), log_of(result), cycle_times=np.array(result["cycle_time_us"]))
     return replace(run, summary={**run.summary, "jump": jumps(run.summary, finite(fine["summary"]))})
 
 

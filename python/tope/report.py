@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -12,14 +12,16 @@ import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 from numpy.typing import NDArray
-from plotly.offline import get_plotlyjs
 
-from tope import words
+from tope import _core, words
 from tope.panels import Array, Panel, Section, Series, packed
 from tope.runs import Run
+from tope.saturation import distances, flags_of, saturation, stretches
+from tope.scene import scene
 
 POINTS = 50_000  # drawn on one page in all, so that a page with many curves stays small
 POINTS_PER_CURVE = (300, 1000)  # at least, at most
+BUNDLE = Path(__file__).parent / "viewer"  # the page's script and style, built from viewer/
 FIGURE_5_JOINTS = ("base_x", "arm_joint_5")
 
 Columns = Sequence[tuple[str, str]]  # (label, column of the log)
@@ -70,8 +72,9 @@ def write_page(
     table: Sequence[tuple[str, ...]] = (),
 ) -> None:
     """Fill in the template."""
-    scenario = next(iter(view.runs.values())).scenario
+    first = next(iter(view.runs.values()))
     parts = [section for section in sections(view) if section.panels]
+    space = scene(view.runs)
     environment = Environment(
         loader=FileSystemLoader(Path(__file__).parent / "templates"),
         autoescape=True,
@@ -80,31 +83,50 @@ def write_page(
         lstrip_blocks=True,
     )
     page = environment.get_template("report.html.j2").render(
-        scenario=scenario,
-        facts=words.scenario_facts(scenario, [run.scenario["method"] for run in view.runs.values()]),
+        scenario=first.scenario,
+        facts=words.scenario_facts(first.scenario, [run.scenario["method"] for run in view.runs.values()]),
         notices=list(
             dict.fromkeys(notice for run in view.runs.values() for notice in run.scenario["notices"])
         ),
+        tiles=[] if view.compares else words.tiles(first.summary),
         rows=rows,
+        distances=[] if view.compares else distances(first.summary),
+        saturated={name: saturation(run) for name, run in view.runs.items()},
         header=words.COMPARISON_HEADER,
         table=table,
         table_note=words.COMPARISON_NOTE,
         sections=parts,
-        data=page_data(view, parts),
-        plotly=Markup(get_plotlyjs()),
+        compares=view.compares,
+        scene=space,
+        data=page_data(view, parts, space),
+        style=bundled("report.css"),
+        script=bundled("report.js"),
     )
     path.write_text(page, encoding="utf-8")
 
 
-def page_data(view: View, parts: Sequence[Section]) -> Markup:
+def bundled(name: str) -> Markup:
+    """A file of the page's bundle; raises Error if it was never built."""
+    try:
+        text = (BUNDLE / name).read_text(encoding="utf-8")
+    except FileNotFoundError as error:
+        raise _core.Error(
+            f"{BUNDLE / name}: missing: the report's page is not built; run `make viewer`"
+        ) from error
+    return Markup(text.replace("</script", "<\\/script"))
+
+
+def page_data(view: View, parts: Sequence[Section], space: Mapping[str, Any] | None) -> Markup:
     """What the page's script draws, as JSON that is safe inside a script element."""
     panels = [panel for section in parts for panel in section.panels]
     least, most = POINTS_PER_CURVE
     points = min(most, max(least, POINTS // max(1, sum(len(panel.series) for panel in panels))))
     data = {
-        "runs": list(view.runs) if view.compares else [],
+        "runs": list(view.runs),
+        "compares": view.compares,
         "end": max((run.time[-1] for run in view.runs.values() if len(run.time)), default=0.0),
         "panels": [packed(panel, points) for panel in panels],
+        "scene": space,
     }
     return Markup(json.dumps(data).replace("<", "\\u003c"))
 
@@ -118,6 +140,7 @@ def sections(view: View) -> list[Section]:
         task_errors(view),
         status(view),
         wheels(view),
+        cycle_times(view),
         figure_4(view),
         figure_5(view),
     ]
@@ -161,12 +184,12 @@ def position_panel(view: View, joint: Mapping[str, Any], title: str = "") -> Pan
     name, buffer, unit = joint["name"], joint["buffer"], joint["unit"]
     inward = {"lower": buffer, "upper": -buffer}
     limits = limits_of(joint)
-    allowed = ", ".join(f"{side} limit {words.number(limit, unit)}" for side, limit in limits)
+    allowed = ", ".join(f"{side} {limit:.4g}" for side, limit in limits)
     return Panel(
         title or name,
         unit,
         curves(view, [(name, f"q.{name}")]),
-        note=f"{allowed}, buffer {words.number(buffer, unit)}",
+        note=f"limits: {allowed}; buffer {buffer:.4g}",
         lines=[limit for _, limit in limits],
         bands=[(limit, limit + inward[side]) for side, limit in limits],
         near=2 * buffer,
@@ -208,7 +231,7 @@ def command_panel(view: View, joint: Mapping[str, Any]) -> Panel:
         name,
         unit,
         series,
-        note=f"bound ±{words.number(bound, unit)}",
+        note=f"bound ±{words.number(bound)}",
         lines=[bound, -bound],
         near=0.5 * bound,
     )
@@ -280,7 +303,7 @@ def status_panel(view: View) -> Panel:
     rows: list[str] = []
     for number, (name, run) in enumerate(view.runs.items()):
         for flag, raised in flags_of(run):
-            x = stretches(run.time, raised)
+            x = strip(run.time, raised)
             y = np.where(np.isnan(x), np.nan, float(len(rows)))
             colour = number if view.compares else len(rows)
             series.append(Series(name if view.compares else flag, colour, x, y, width=12))
@@ -288,22 +311,10 @@ def status_panel(view: View) -> Panel:
     return Panel("Status", "", series, rows=rows)
 
 
-def flags_of(run: Run) -> Iterable[tuple[str, NDArray[np.bool_]]]:
-    """Each status flag other than ok, with the cycles that raised it."""
-    texts, which = np.unique(run.log["status"], return_inverse=True)
-    split = [text.split("|") for text in texts]
-    for flag in sorted({flag for flags in split for flag in flags} - {"ok", ""}):
-        yield flag, np.array([flag in flags for flags in split])[which]
-
-
-def stretches(t: Array, raised: NDArray[np.bool_]) -> Array:
+def strip(t: Array, raised: NDArray[np.bool_]) -> Array:
     """Start, end and NaN of each stretch [s]; ones too close to tell apart on a screen are joined."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], raised, [False]))))
-    starts, ends = t[edges[::2]], t[np.minimum(edges[1::2], len(t) - 1)]
     visible = (t[-1] - t[0]) / 1000
-    apart = np.concatenate(([True], starts[1:] - ends[:-1] > visible))
-    last = np.append(np.flatnonzero(apart)[1:] - 1, len(ends) - 1)
-    starts, ends = starts[apart], ends[last]
+    starts, ends = stretches(t, raised, visible)
     triples = np.stack([starts, np.maximum(ends, starts + visible), np.full(len(starts), np.nan)], axis=1)
     return np.asarray(triples.ravel())
 
@@ -314,6 +325,22 @@ def wheels(view: View) -> Section:
     columns = [(name.removeprefix("wheel."), name) for name in view.columns("wheel.")]
     panels = together(view, "Wheels" if not view.compares else "Wheel", unit, columns) if columns else []
     return Section(f"Wheel {what}", "", panels)
+
+
+def cycle_times(view: View) -> Section:
+    """How long each update of the controller took, for runs of which that is known."""
+    series = [
+        Series(name if view.compares else "update", number, times_of(run, measured), measured)
+        for number, (name, run) in enumerate(view.runs.items())
+        if (measured := run.cycle_times) is not None and len(measured) > 0
+    ]
+    panels = [Panel("Computing time", "µs", series, log=True)] if series else []
+    return Section("Time per cycle", "How long the controller took, on the machine of this run.", panels)
+
+
+def times_of(run: Run, cycles: Array) -> Array:
+    """The time of each cycle [s]."""
+    return np.asarray(np.arange(len(cycles)) * float(run.scenario["dt"]), dtype=float)
 
 
 def figure_4(view: View) -> Section:

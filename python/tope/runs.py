@@ -20,12 +20,14 @@ class Run:
     """A finished simulation.
 
     `summary` is what summary.json holds. `log` maps a column name to its values, one a logged cycle:
-    floats [s, rad, m, rad/s, m/s, Nm, N, 1], except `status`, which holds text.
+    floats [s, rad, m, rad/s, m/s, Nm, N, 1], except `status`, which holds text. `cycle_times` is how long
+    each update of the controller took [us]; it is not written to a file: None for a run read back from one.
     """
 
     summary: Summary
     log: Log
     out: Path | None = None
+    cycle_times: NDArray[np.float64] | None = None
 
     @property
     def scenario(self) -> dict[str, Any]:

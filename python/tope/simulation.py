@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -36,7 +36,7 @@ def simulate(
     loaded = load_scenario(scenario, overrides)
     folder = None if out is None else fresh_folder(out)
     result = _core.simulate(loaded, None if folder is None else str(folder), progress, True)
-    run = Run(finite(result["summary"]), log_of(result), folder)
+    run = Run(finite(result["summary"]), log_of(result), folder, np.array(result["cycle_time_us"]))
     if folder is not None:
         if report:
             write_run_report(run, folder / "report.html")
@@ -54,7 +54,21 @@ def load_scenario(
 def load_run(folder: str | os.PathLike[str]) -> Run:
     """Read a folder that `simulate` wrote; raises Error if it is broken or the run did not finish."""
     folder = Path(folder)
-    return Run(read_summary(folder / "summary.json"), read_log(folder / "log.csv"), folder)
+    run = Run(read_summary(folder / "summary.json"), read_log(folder / "log.csv"), folder)
+    for column in promised_columns(run.scenario):
+        if column not in run.log:
+            raise _core.Error(f"{folder / 'log.csv'}:1: no column '{column}', which the summary promises")
+    return run
+
+
+def promised_columns(scenario: Mapping[str, Any]) -> Iterator[str]:
+    """The columns of a scenario's log, but for wheels."""
+    for joint in scenario["joints"]:
+        yield from (f"{kind}.{joint['name']}" for kind in "qvu")
+        yield from (f"xi.{joint['name']}.{side}" for side in ("upper", "lower"))
+    for task in scenario["tasks"]:
+        yield from (f"e.{task['name']}.{i}" for i in range(task["size"]))
+    yield "scale"
 
 
 def as_text(overrides: Mapping[str, Any]) -> dict[str, str]:
@@ -89,6 +103,11 @@ def read_summary(path: Path) -> Summary:
         raise _core.Error(f"{path}:{error.lineno}: not JSON: {error.msg}") from error
     if not isinstance(summary, dict) or "scenario" not in summary:
         raise _core.Error(f"{path}: not the summary of a run: it has no key 'scenario'")
+    for key in ("robot", "joints", "tasks"):
+        if key not in summary["scenario"]:
+            raise _core.Error(
+                f"{path}: not the summary of a run of this version: 'scenario' has no key '{key}'"
+            )
     return summary
 
 

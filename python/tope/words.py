@@ -7,6 +7,8 @@ from typing import Any
 
 Summary = Mapping[str, Any]
 
+PREFIXES = (("m", 1e3), ("µ", 1e6), ("n", 1e9))
+
 COMPARISON_HEADER = (
     "run",
     "limits",
@@ -24,9 +26,12 @@ COMPARISON_NOTE = (
 
 
 def number(value: float | None, unit: str = "") -> str:
-    """The value to three digits with its unit, or a dash if there is none."""
+    """The value to three digits with its unit, a small length or angle with a prefix; a dash for none."""
     if value is None:
         return "–"
+    if unit in ("m", "rad") and 0 < abs(value) < 0.01:
+        prefix, factor = next((p, f) for p, f in PREFIXES if abs(value) * f >= 1 or p == "n")
+        value, unit = factor * value, prefix + unit
     digits = f"{value:.0f}" if 1e3 <= abs(value) < 1e6 else f"{value:.3g}"
     return f"{digits} {unit}".rstrip()
 
@@ -71,6 +76,49 @@ def experiment_rows(summary: Summary) -> list[tuple[str, str]]:
             f"{', '.join(seen)}; its sensors are off by {number(off, units.get(joint, ''))} ({joint})",
         ),
     ]
+
+
+def tiles(summary: Summary) -> list[tuple[str, str, str]]:
+    """The outcome at a glance: (what, figure, what it says)."""
+    reached = summary["time_to_goal"]
+    jumping, fraction = worst(summary["max_command_jump"])
+    return [
+        (
+            "Goal",
+            "not reached" if reached is None else f"reached in {number(reached, 's')}",
+            goal_accuracy(summary),
+        ),
+        ("Limits", *limits_at_a_glance(summary)),
+        (
+            "Largest jump of a command",
+            percent(fraction),
+            f"of its bound in one cycle, {jumping}" if jumping else "no cycle",
+        ),
+        (
+            "Computing time",
+            number(summary["cycle_time_us"]["p50"], "µs"),
+            f"a cycle; slowest {number(summary['cycle_time_us']['max'], 'µs')}",
+        ),
+    ]
+
+
+def limits_at_a_glance(summary: Summary) -> tuple[str, str]:
+    """Whether all limits were kept, and by how much the nearest one."""
+    joint, violation = worst(summary["max_limit_violation"])
+    if violation is None:
+        return "none", "no joint has one"
+    units = {each["name"]: each["unit"] for each in summary["scenario"]["joints"]}
+    distance = number(abs(violation), units[joint])
+    return ("crossed", f"by {distance}, {joint}") if violation > 0 else ("kept", f"{distance} away, {joint}")
+
+
+def goal_accuracy(summary: Summary) -> str:
+    """The final errors of all tasks."""
+    return ", ".join(
+        f"{task['name']} {number(summary['task_error'][task['name']]['final'], unit(task))}"
+        for task in by_level(summary["scenario"]["tasks"])
+        if task["name"] in summary["task_error"]
+    )
 
 
 def comparison_row(name: str, summary: Summary) -> tuple[str, ...]:

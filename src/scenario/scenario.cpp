@@ -23,12 +23,17 @@ auto located(const YamlReader& yaml, const std::string& key, Build build) {
   }
 }
 
-Robot read_robot(const YamlReader& yaml) {
+Robot read_robot(const YamlReader& yaml, Scenario& scenario) {
   const std::filesystem::path urdf = yaml.path("urdf");
+  scenario.urdf = std::filesystem::absolute(urdf).lexically_normal();
   const bool has_config = yaml.has("config");
   const std::filesystem::path config = has_config ? yaml.path("config") : "";
   yaml.finish();
-  return has_config ? Robot::from_urdf(urdf, config) : Robot::from_urdf(urdf);
+  if (!has_config) {
+    return Robot::from_urdf(urdf);
+  }
+  scenario.locked_joints = RobotConfig::from_yaml(config).locked_joints;
+  return Robot::from_urdf(urdf, config);
 }
 
 /// `speed_bound` is the joint's: beyond its limit it is led back at no more than half of that.
@@ -306,7 +311,7 @@ Scenario Scenario::load(const std::filesystem::path& file,
   if (scenario.duration < scenario.controller.dt) {
     yaml.fail("duration", "must be at least dt");
   }
-  Robot robot = read_robot(yaml.map("robot"));
+  Robot robot = read_robot(yaml.map("robot"), scenario);
   if (const auto limits = yaml.optional_map("limits")) {
     scenario.controller.limits = read_limits(*limits, robot, scenario.moving_limits);
   }

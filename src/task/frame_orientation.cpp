@@ -21,6 +21,17 @@ FrameOrientation::FrameOrientation(const Robot& robot, const std::string& frame,
   require_rotation("FrameOrientation: target", target_.at(0.0).rotation);
 }
 
+std::optional<FrameGoal> FrameOrientation::frame_goal(double t) const {
+  return FrameGoal{.frame = frame_, .rotation = target_.at(t).rotation};
+}
+
+std::unique_ptr<Task> FrameOrientation::aimed_at(const Target<PointTarget>& /*point*/,
+                                                 const Target<RotationTarget>& rotation) const {
+  auto copy = std::make_unique<FrameOrientation>(*this);
+  copy->target_ = rotation;
+  return copy;
+}
+
 void FrameOrientation::evaluate(const RobotTerms& terms, double t) {
   terms.frame_jacobian(frame_, frame_jacobian_);
   near_flip_ = fill_orientation_rows(terms.frame_rotation(frame_), frame_jacobian_.bottomRows<3>(),

@@ -23,6 +23,19 @@ FramePose::FramePose(const Robot& robot, const std::string& frame, Target<PointT
   require_rotation("FramePose: rotation", rotation_.at(0.0).rotation);
 }
 
+std::optional<FrameGoal> FramePose::frame_goal(double t) const {
+  return FrameGoal{
+      .frame = frame_, .position = position_.at(t).position, .rotation = rotation_.at(t).rotation};
+}
+
+std::unique_ptr<Task> FramePose::aimed_at(const Target<PointTarget>& point,
+                                          const Target<RotationTarget>& rotation) const {
+  auto copy = std::make_unique<FramePose>(*this);
+  copy->position_ = point;
+  copy->rotation_ = rotation;
+  return copy;
+}
+
 void FramePose::evaluate(const RobotTerms& terms, double t) {
   const PointTarget point = position_.at(t);
   terms.frame_jacobian(frame_, frame_jacobian_);

@@ -20,6 +20,17 @@ FramePosition::FramePosition(const Robot& robot, const std::string& frame, Targe
   require_finite("FramePosition: target", target_.at(0.0).position);
 }
 
+std::optional<FrameGoal> FramePosition::frame_goal(double t) const {
+  return FrameGoal{.frame = frame_, .position = target_.at(t).position};
+}
+
+std::unique_ptr<Task> FramePosition::aimed_at(const Target<PointTarget>& point,
+                                              const Target<RotationTarget>& /*rotation*/) const {
+  auto copy = std::make_unique<FramePosition>(*this);
+  copy->target_ = point;
+  return copy;
+}
+
 void FramePosition::evaluate(const RobotTerms& terms, double t) {
   const PointTarget target = target_.at(t);
   terms.frame_jacobian(frame_, frame_jacobian_);

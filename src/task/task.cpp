@@ -95,4 +95,8 @@ std::optional<double> Task::duration() const {
   return std::visit([](const auto& r) { return r.duration(); }, reference_);
 }
 
+double Task::gain() const {
+  return std::visit([](const auto& r) { return r.gain(); }, reference_);
+}
+
 }  // namespace tope

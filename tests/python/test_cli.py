@@ -85,7 +85,7 @@ def test_a_set_without_value_is_a_usage_error(tope):
     assert "KEY=VALUE" in err
 
 
-@pytest.mark.parametrize("command", ["run", "compare", "check"])
+@pytest.mark.parametrize("command", ["run", "compare", "check", "play"])
 def test_a_wrong_key_is_one_line_that_names_file_and_key(tope, command):
     code, _, err = tope(command, VELOCITY, "--set", "limits.metod=chain")
     assert code == 1
@@ -93,7 +93,7 @@ def test_a_wrong_key_is_one_line_that_names_file_and_key(tope, command):
     assert "metod" in err
 
 
-@pytest.mark.parametrize("command", ["run", "compare", "check"])
+@pytest.mark.parametrize("command", ["run", "compare", "check", "play"])
 def test_a_missing_scenario_is_one_line_that_names_it(tope, command):
     code, _, err = tope(command, "nowhere.yaml")
     assert code == 1

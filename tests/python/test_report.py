@@ -1,6 +1,6 @@
 """The report's page: what it draws and says, its size, its cost, and that it needs no network.
 
-Not covered here: how the page looks and answers to clicks, which takes a browser.
+Not covered here: how the page looks and answers to clicks (test_report_page.py).
 """
 
 from __future__ import annotations
@@ -9,17 +9,30 @@ import base64
 import json
 import re
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
-from plotly.offline import get_plotlyjs
 
-from tope import words
+from tope import _core, report, words
 from tope.panels import thin
 from tope.report import write_comparison_report, write_run_report
 from tope.runs import Run, finite
 
+URDF = Path(__file__).parents[2] / "robots/youbot/youbot.urdf"
 JOINTS = ("base_x", "base_y", "base_yaw", *(f"arm_joint_{i}" for i in range(1, 6)))
+
+
+def task(name, kind, level, unit, goal_time):
+    return {
+        "name": name,
+        "type": kind,
+        "level": level,
+        "size": 3,
+        "unit": unit,
+        "goal_time": goal_time,
+        "frame": "ee",
+    }
 
 
 def scenario(name="demo", mode="velocity", joints=JOINTS, method="unilateral"):
@@ -31,6 +44,7 @@ def scenario(name="demo", mode="velocity", joints=JOINTS, method="unilateral"):
         "method": method,
         "dt": 1e-3,
         "duration": 10.0,
+        "robot": {"name": "youbot", "urdf": str(URDF), "locked_joints": {}},
         "joints": [
             {
                 "name": joint,
@@ -43,8 +57,8 @@ def scenario(name="demo", mode="velocity", joints=JOINTS, method="unilateral"):
             for joint in joints
         ],
         "tasks": [
-            {"name": "reach", "type": "position", "level": 2, "size": 3, "unit": "m", "goal_time": 5.0},
-            {"name": "turn", "type": "orientation", "level": 1, "size": 3, "unit": "rad", "goal_time": None},
+            task("reach", "frame_position", 2, "m", 5.0),
+            task("turn", "frame_orientation", 1, "rad", None),
         ],
         "notices": [],
         "description": "",
@@ -92,7 +106,7 @@ def make_run(rows=10001, **described):
     for wheel in range(4):
         log[f"wheel.{wheel}"] = 10 * np.cos(t) + 1e-2 * noise.normal(size=rows)
     log["status"] = np.where(t > 4.0, "limit|scaled", "ok")
-    return Run(summary(asked), log)
+    return Run(summary(asked), log, cycle_times=1 + noise.exponential(size=max(0, rows - 1)))
 
 
 def data_of(page):
@@ -132,20 +146,47 @@ def test_ten_seconds_at_a_kilohertz_stay_small_and_quick(tmp_path):
     start = time.perf_counter()
     write_run_report(run, path)
     assert time.perf_counter() - start < 3.0
-    assert path.stat().st_size < 5.6e6
+    assert path.stat().st_size < 2e6
+
+
+def test_a_comparison_of_all_methods_stays_small_and_quick(tmp_path):
+    runs = {method: make_run(method=method) for method in _core.LIMIT_METHODS}
+    start = time.perf_counter()
+    write_comparison_report(runs, tmp_path / "report.html")
+    assert time.perf_counter() - start < 3.0
+    assert (tmp_path / "report.html").stat().st_size < 6e6
 
 
 @pytest.mark.parametrize("name", ["page", "comparison"])
 def test_page_asks_for_nothing_from_outside(name, request):
     page = request.getfixturevalue(name)
-    assert page.count(get_plotlyjs()) == 1
-    ours = page.replace(get_plotlyjs(), "")
+    assert page.count(report.bundled("report.js")) == 1
+    ours = page.replace(report.bundled("report.js"), "")
     assert not re.search(r"https?:|\bsrc=|@import|url\(|fetch\(", ours)
 
 
 def test_outcome_is_said_in_words(page):
-    for sentence in ("reached after 4.9 s", "kept, 0.02 m away (base_x)", "0.4 % of the bound"):
+    for sentence in (
+        "reached in 4.9 s",
+        "reached after 4.9 s",
+        "kept, 0.02 m away (base_x)",
+        "0.4 % of the bound",
+    ):
         assert sentence in page
+
+
+def test_what_was_saturated_is_said_of_every_run(page, comparison):
+    sentence = "The upper limit of base_x acted from 4 s to the end, by up to 100 %."
+    assert page.count(sentence) == 1
+    assert comparison.count(sentence) == 3
+
+
+def test_a_run_without_saturation_says_so(tmp_path):
+    run = make_run(rows=11)
+    run.log["xi.base_x.upper"][:] = 0.0
+    run.log["status"][:] = "ok"
+    write_run_report(run, tmp_path / "report.html")
+    assert "Nothing: no limit acted" in (tmp_path / "report.html").read_text(encoding="utf-8")
 
 
 def test_every_limited_joint_is_drawn_with_limits_and_buffers(page):
@@ -301,8 +342,60 @@ def test_words_for_a_crossed_limit_and_for_a_goal_that_was_missed():
     assert words.limits(told) == "no joint has one"
 
 
+def test_tiles_say_the_outcome_at_a_glance():
+    told = summary(scenario())
+    assert [figure for _, figure, _ in words.tiles(told)] == ["reached in 4.9 s", "kept", "0.4 %", "10 µs"]
+    told["time_to_goal"] = None
+    told["max_limit_violation"] = {"arm_joint_5": 0.01, "overall": 0.01}
+    told["max_command_jump"] = {"overall": None}
+    assert words.tiles(told)[0][1] == "not reached"
+    assert words.tiles(told)[1] == ("Limits", "crossed", "by 0.01 rad, arm_joint_5")
+    assert words.tiles(told)[2][1:] == ("–", "no cycle")
+    told["max_limit_violation"] = {"overall": None}
+    assert words.tiles(told)[1][1:] == ("none", "no joint has one")
+
+
 def test_json_has_no_numbers_that_json_does_not_know():
     assert finite({"a": [1.0, float("nan")], "b": (float("inf"), 2, "x")}) == {
         "a": [1.0, None],
         "b": [None, 2, "x"],
     }
+
+
+def test_small_lengths_and_angles_have_a_prefix():
+    assert words.number(0.00125, "m") == "1.25 mm"
+    assert words.number(-2e-4, "rad") == "-200 µrad"
+    assert words.number(4.97e-9, "m") == "4.97 nm"
+    assert words.number(7.55e-5, "m") == "75.5 µm"
+    assert words.number(0.0125, "m") == "0.0125 m"
+    assert words.number(0.0, "m") == "0 m"
+    assert words.number(0.001, "m/s") == "0.001 m/s"
+
+
+def test_the_time_of_each_cycle_is_drawn_if_known(page, tmp_path):
+    assert "Computing time" in panels_of(page)
+    run = make_run(rows=11)
+    write_run_report(Run(run.summary, run.log), tmp_path / "report.html")
+    assert "Computing time" not in panels_of((tmp_path / "report.html").read_text(encoding="utf-8"))
+
+
+def test_a_page_that_was_never_built_says_how_to_build_it(tmp_path, monkeypatch):
+    monkeypatch.setattr(report, "BUNDLE", tmp_path)
+    with pytest.raises(_core.Error, match=r"report\.css: missing: .* run `make viewer`"):
+        write_run_report(make_run(rows=11), tmp_path / "report.html")
+
+
+def test_a_robot_whose_urdf_is_gone_is_an_error_not_an_empty_page(tmp_path):
+    run = make_run(rows=11)
+    run.scenario["robot"]["urdf"] = str(tmp_path / "gone.urdf")
+    with pytest.raises(_core.Error, match=r"gone\.urdf: missing"):
+        write_run_report(run, tmp_path / "report.html")
+    assert not (tmp_path / "report.html").exists()
+
+
+def test_runs_of_unlike_robots_have_no_replay(tmp_path, comparison):
+    assert len(data_of(comparison)["scene"]["runs"]) == 3
+    runs = {"one": make_run(rows=11), "two": make_run(rows=11)}
+    runs["two"].scenario["robot"]["name"] = "another"
+    write_comparison_report(runs, tmp_path / "report.html")
+    assert data_of((tmp_path / "report.html").read_text(encoding="utf-8"))["scene"] is None

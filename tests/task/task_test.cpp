@@ -219,6 +219,33 @@ BOOST_AUTO_TEST_CASE(bad_targets_are_refused) {
   check_error([&] { JointPosition(robot, {{"base_x", NAN}}); }, {"JointPosition: target", "finite"});
 }
 
+BOOST_AUTO_TEST_CASE(frame_tasks_tell_their_goal_and_can_be_aimed_anew) {
+  const Robot robot = youbot();
+  Random random(5);
+  const Vector3 from = random.vector(3);
+  const Vector3 to = random.vector(3);
+  const Matrix3 turned = random.rotation();
+  const Matrix3 other = random.rotation();
+  const FramePosition position(robot, "ee", from);
+  const FrameOrientation orientation(robot, "ee", turned);
+  const FramePose pose(robot, "arm_link_3", from, turned);
+  BOOST_TEST((*position.frame_goal(0.0)->position == from));
+  BOOST_TEST(!position.frame_goal(0.0)->rotation.has_value());
+  BOOST_TEST((*orientation.frame_goal(0.0)->rotation == turned));
+  BOOST_TEST(robot.frame_name(pose.frame_goal(0.0)->frame) == "arm_link_3");
+  BOOST_TEST(!Damping(robot).frame_goal(0.0).has_value());
+  for (const Task* task : {static_cast<const Task*>(&position), static_cast<const Task*>(&orientation),
+                           static_cast<const Task*>(&pose)}) {
+    const auto aimed = task->aimed_at(PointTarget{.position = to}, RotationTarget{.rotation = other});
+    const FrameGoal goal = *aimed->frame_goal(0.0);
+    BOOST_TEST((aimed->type() == task->type()));
+    BOOST_TEST((goal.frame == task->frame_goal(0.0)->frame));
+    BOOST_TEST((!goal.position || *goal.position == to));
+    BOOST_TEST((!goal.rotation || *goal.rotation == other));
+    BOOST_TEST((goal.position || goal.rotation));
+  }
+}
+
 BOOST_AUTO_TEST_SUITE_END()
 
 }  // namespace tope::test

@@ -33,6 +33,7 @@ class Exponential {
   bool off_plan(double /*t*/, const VectorArg& /*error*/, bool /*second_order*/) const { return false; }
   /// Seconds from the start to the promised arrival: none.
   std::optional<double> duration() const { return std::nullopt; }
+  double gain() const { return options_.gain; }  ///< [1/s]
   void resize(int /*size*/) {}
 
  private:

@@ -45,6 +45,7 @@ class PredefinedTime {
   /// True where the error (m) at time t [s] is off its plan by more than 2 % of where it began, and 1 mm or mrad.
   bool off_plan(double t, const VectorArg& error, bool second_order) const;
   std::optional<double> duration() const { return options_.duration; }
+  double gain() const { return options_.gain; }  ///< [1/s]
   void resize(int size);
 
  private:

@@ -56,6 +56,7 @@ class Robot {
   /// Errors: ConfigError for an unknown name, with the nearest known one.
   int joint_index(const std::string& name) const;
   int frame_index(const std::string& name) const;
+  const std::string& frame_name(int frame) const { return frame_names_[static_cast<std::size_t>(frame)]; }
 
   /// Bounds of each joint (nv). Infinite where a joint has none.
   const Vector& position_lower() const { return position_lower_; }  ///< [rad or m]

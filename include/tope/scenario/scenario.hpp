@@ -40,6 +40,9 @@ struct Scenario {
   std::string name;
   std::string description;
   std::filesystem::path file;
+  std::filesystem::path urdf;  ///< of the robot, absolute
+  std::map<std::string, double>
+      locked_joints;  ///< joints held fixed, which the robot does not list [rad or m]
   std::shared_ptr<const Robot> robot;
   ControllerOptions controller;
   std::vector<MovingLimit> moving_limits;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tope/plant/plant.hpp>
+#include <tope/scenario/closed_loop.hpp>
 #include <tope/scenario/log.hpp>
 #include <tope/scenario/metrics.hpp>
 #include <tope/scenario/scenario.hpp>
@@ -29,25 +29,23 @@ class Simulation {
   Summary run();
 
   const Log& log() const { return log_; }
+  /// Computing time of each cycle's Controller::update [us]. Not in the log, which is the same in every run.
+  const std::vector<double>& cycle_times() const { return cycle_times_; }
 
  private:
-  MecanumBase::Wheels wheel_commands(const MecanumBase& base, const Vector& u) const;
-  void move_limits(double t, Metrics& metrics);
-  void write_row(double t, const Vector& u);
-  void evaluate_errors(double t);
+  void write_row();
+  void evaluate_errors();
   Summary complete(Summary summary, const Smoothness& smoothness) const;
 
-  Scenario scenario_;
   SimulationOptions options_;
-  Controller controller_;
-  std::vector<TaskHandle> handles_;
-  std::unique_ptr<Plant> plant_;
+  ClosedLoop loop_;
   Log log_;
   std::vector<double> row_;
-  RobotTerms true_terms_;  // at the true state, which the controller may not see
+  RobotTerms true_terms_;
   std::vector<std::unique_ptr<Task>> true_tasks_;
   std::vector<Vector> errors_;  // of each task at the true state
   std::vector<double> norms_;
+  std::vector<double> cycle_times_;
 };
 
 }  // namespace tope

@@ -21,6 +21,9 @@ class FramePose final : public Task {
   std::string_view type() const override { return "frame_pose"; }
   std::string_view error_unit() const override { return "mixed"; }
   std::unique_ptr<Task> clone() const override { return std::make_unique<FramePose>(*this); }
+  std::optional<FrameGoal> frame_goal(double t) const override;
+  std::unique_ptr<Task> aimed_at(const Target<PointTarget>& point,
+                                 const Target<RotationTarget>& rotation) const override;
 
  private:
   void evaluate(const RobotTerms& terms, double t) override;

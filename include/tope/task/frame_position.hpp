@@ -19,6 +19,9 @@ class FramePosition final : public Task {
   std::string_view type() const override { return "frame_position"; }
   std::string_view error_unit() const override { return "m"; }
   std::unique_ptr<Task> clone() const override { return std::make_unique<FramePosition>(*this); }
+  std::optional<FrameGoal> frame_goal(double t) const override;
+  std::unique_ptr<Task> aimed_at(const Target<PointTarget>& point,
+                                 const Target<RotationTarget>& rotation) const override;
 
  private:
   void evaluate(const RobotTerms& terms, double t) override;

@@ -2,6 +2,7 @@
 
 #include <tope/common/types.hpp>
 #include <tope/reference/reference.hpp>
+#include <tope/reference/target.hpp>
 #include <tope/robot/robot_terms.hpp>
 
 #include <memory>
@@ -9,6 +10,13 @@
 #include <string_view>
 
 namespace tope {
+
+/// Where a task wants a frame of the robot to be; what the task does not care about is missing.
+struct FrameGoal {
+  int frame = -1;  ///< index of the frame in the robot
+  std::optional<Vector3> position{};
+  std::optional<Matrix3> rotation{};
+};
 
 /// One goal: an error e(q) of m rows, its Jacobian, and the rate the error is to have. What the goal is,
 /// apart from how a control law pursues it. A new task derives from this class and implements evaluate() and
@@ -23,6 +31,8 @@ class Task {
   virtual std::string_view error_unit() const = 0;
   /// False for tasks that only take up freedom that is left (posture, damping).
   virtual bool is_goal() const { return true; }
+  /// Where the task wants its frame at time t [s]; none for a task that is not about a frame.
+  virtual std::optional<FrameGoal> frame_goal(double /*t*/) const { return std::nullopt; }
 
   /// Evaluates the task at the robot's state and time t [s]. Never allocates or throws. The first call starts
   /// the reference.
@@ -53,10 +63,17 @@ class Task {
   const Vector& drift() const { return drift_; }
   /// Seconds from start to promised arrival, if the reference promises one.
   std::optional<double> duration() const;
+  /// Gain of the reference [1/s].
+  double gain() const;
   /// True when a rotation error lies within 0.05 rad of pi, where its direction is about to flip.
   bool near_flip() const { return near_flip_; }
 
   virtual std::unique_ptr<Task> clone() const = 0;
+  /// A copy with another target for its frame; a plain copy of a task that is not about a frame.
+  virtual std::unique_ptr<Task> aimed_at(const Target<PointTarget>& /*point*/,
+                                         const Target<RotationTarget>& /*rotation*/) const {
+    return clone();
+  }
 
  protected:
   Task(int size, int nv, Reference reference);

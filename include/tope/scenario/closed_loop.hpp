@@ -1,0 +1,59 @@
+#pragma once
+
+#include <tope/controller/controller.hpp>
+#include <tope/plant/plant.hpp>
+#include <tope/scenario/scenario.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace tope {
+
+/// Controller and plant of a scenario, one cycle at a time: what every way to run a scenario shares.
+class ClosedLoop {
+ public:
+  /// Starts at the scenario's initial state, at rest, with all its tasks.
+  /// Errors: ConfigError when the controller refuses its options.
+  explicit ClosedLoop(Scenario scenario);
+
+  /// Updates the controller at the present time, at the state that the robot's sensors see, with limits that move where
+  /// they are by now. Errors: Error where moving limits come too near each other.
+  const Status& control();
+  /// Moves the plant on by one period under the last command.
+  void move();
+
+  /// Goes on under the options, limits and tasks of `scenario`, from the present state and time. The robot, the mode,
+  /// the period, the plant and the number of tasks must be the same; tasks that were removed stay so.
+  /// Errors: as the constructor; nothing is changed then.
+  void adopt(Scenario scenario);
+  /// Adds a task of the scenario that is not present, or removes one that is; a smooth change over `over` seconds.
+  void insert(std::size_t task, double over);
+  void remove(std::size_t task, double over);
+
+  double time() const { return static_cast<double>(cycle_) * scenario_.controller.dt; }  ///< [s]
+  const Vector& position() const { return plant_->position(); }                          ///< true q (nq)
+  const Vector& velocity() const { return plant_->velocity(); }                          ///< true v (nv)
+  const Vector& command() const { return command_; }                                     ///< last u (nv)
+  /// The task as the controller last saw it; none if it is not present.
+  const Task* task(std::size_t task) const;
+  /// Speeds [rad/s] or torques [Nm] of the wheels under the last command, for a base that has them.
+  std::optional<MecanumBase::Wheels> wheels() const;
+
+  const Scenario& scenario() const { return scenario_; }
+  const Controller& controller() const { return *controller_; }
+  const Plant& plant() const { return *plant_; }
+
+ private:
+  void move_limits();
+
+  Scenario scenario_;
+  std::unique_ptr<Controller> controller_;
+  std::vector<std::optional<TaskHandle>> handles_;  // of the scenario's tasks
+  std::unique_ptr<Plant> plant_;
+  Vector command_;
+  std::int64_t cycle_ = 0;
+};
+
+}  // namespace tope

@@ -1,0 +1,29 @@
+"""Pinocchio's forward kinematics of the youBot, to check ours against."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+import pinocchio
+
+URDF = Path(__file__).parents[2] / "robots/youbot/youbot.urdf"
+
+
+def frames(positions: Mapping[str, float]) -> dict[str, pinocchio.SE3]:
+    """The placement of every frame at joint positions; joints that are not named are at 0."""
+    model = pinocchio.buildModelFromUrdf(str(URDF))
+    data = model.createData()
+    q = pinocchio.neutral(model)
+    for name, value in positions.items():
+        joint = model.joints[model.getJointId(name)]
+        q[joint.idx_q : joint.idx_q + joint.nq] = [np.cos(value), np.sin(value)] if joint.nq == 2 else value
+    pinocchio.framesForwardKinematics(model, data, q)
+    return {frame.name: data.oMf[i] for i, frame in enumerate(model.frames)}
+
+
+def placement(position: list[float], xyzw: list[float]) -> pinocchio.SE3:
+    """A placement of its position [m] and quaternion."""
+    turned = pinocchio.Quaternion(np.array(xyzw, dtype=float))
+    return pinocchio.SE3(turned, np.array(position, dtype=float))
