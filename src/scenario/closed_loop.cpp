@@ -49,7 +49,8 @@ void ClosedLoop::move_limits() {
                              .upper_rate = moving.rate(time())};
     if (!controller_->move_limits(moving.joint, motion)) {
       throw Error("limits of " + robot.joint_names()[static_cast<std::size_t>(moving.joint)] + " at " +
-                  std::to_string(time()) + " s: the upper one comes too near the lower one for their buffers");
+                  std::to_string(time()) +
+                  " s: the upper one comes too near the lower one for their buffers");
     }
   }
 }

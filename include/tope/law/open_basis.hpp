@@ -16,8 +16,8 @@ class OpenBasis {
   /// No direction is.
   void close_all() { size_ = 0; }
 
-  int size() const { return size_; }                        ///< d, columns of Z
-  auto columns() const { return open_.leftCols(size_); }    ///< Z (n x d)
+  int size() const { return size_; }                      ///< d, columns of Z
+  auto columns() const { return open_.leftCols(size_); }  ///< Z (n x d)
   /// out = A Z (m x d).
   void project(const Eigen::Ref<const Matrix>& a, Eigen::Ref<Matrix> out) const;
 
