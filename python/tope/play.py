@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import io
+import signal
 import socket
 import threading
 from collections.abc import Callable, Mapping
-from contextlib import closing, redirect_stdout, suppress
+from contextlib import closing, redirect_stdout
 from typing import Any
 
 import numpy as np
@@ -139,8 +140,10 @@ def told(scenario: Mapping[str, Any], state: State, refused: str) -> str:
 def play(
     scenario: str, overrides: Mapping[str, str], *, host: str, port: int, ready: Callable[[str], None]
 ) -> None:
-    """Serve a scenario until interrupted; `ready` is called with the page's address."""
+    """Serve a scenario until SIGINT or SIGTERM; `ready` is called with the page's address. Main thread only."""
+    ended = threading.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):  # a shell lets its background jobs ignore SIGINT otherwise
+        signal.signal(number, lambda *_: ended.set())
     with closing(Session(scenario, overrides)) as session, closing(Page(session, host, port)) as page:
         ready(page.address)
-        with suppress(KeyboardInterrupt):
-            threading.Event().wait()
+        ended.wait()

@@ -217,18 +217,29 @@ def tope(*arguments):
     return [sys.executable, "-m", "tope.cli", "play", VELOCITY, *arguments]
 
 
-def test_the_command_line_serves_this_machine_alone_and_ends_on_ctrl_c():
+def ignore_interrupts():
+    """As a shell does for its background jobs."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_the_command_line_serves_this_machine_alone_and_ends_on_a_signal(number):
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
-    with subprocess.Popen(tope("--port", str(port)), stdout=subprocess.PIPE, text=True) as process:
-        wait_for(lambda: process.stdout.readline().startswith("Open"), seconds=30)
-        with urllib.request.urlopen(f"http://127.0.0.1:{port}") as answer:
-            assert b"<html" in answer.read()
-        listening = [line.split()[1] for line in Path("/proc/net/tcp").read_text().splitlines()[1:]]
-        assert [each for each in listening if each.endswith(f":{port:04X}") and each[:8] != "0100007F"] == []
-        process.send_signal(signal.SIGINT)
-        assert process.wait(20) == 0
+    with subprocess.Popen(
+        tope("--port", str(port)), stdout=subprocess.PIPE, text=True, preexec_fn=ignore_interrupts
+    ) as process:
+        try:
+            wait_for(lambda: process.stdout.readline().startswith("Open"), seconds=30)
+            with urllib.request.urlopen(f"http://127.0.0.1:{port}") as answer:
+                assert b"<html" in answer.read()
+            sockets = [line.split()[1] for line in Path("/proc/net/tcp").read_text().splitlines()[1:]]
+            assert [s for s in sockets if s.endswith(f":{port:04X}") and s[:8] != "0100007F"] == []
+            process.send_signal(number)
+            assert process.wait(20) == 0
+        finally:
+            process.kill()
 
 
 def test_a_browser_draws_the_page_without_any_other_network(browser, page):
