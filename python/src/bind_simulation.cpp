@@ -1,6 +1,7 @@
 #include "bindings.hpp"
 
 #include <tope/law/limit_method.hpp>
+#include <tope/scenario/benchmark.hpp>
 #include <tope/scenario/simulation.hpp>
 
 #include <nanobind/ndarray.h>
@@ -155,6 +156,16 @@ nb::dict simulate(const Scenario& scenario, const std::optional<std::filesystem:
   return result;
 }
 
+nb::dict time_cycles(const Scenario& scenario, int acting, int cycles) {
+  const Benchmark timed = benchmark(scenario, {.cycles = cycles, .acting = acting});
+  nb::dict entry;
+  entry["states"] = timed.states;
+  entry["largest_laws"] = timed.largest_laws;
+  entry["cycle_us"] = nb::cast(timed.cycle_us);
+  entry["rigid_body_us"] = nb::cast(timed.rigid_body_us);
+  return entry;
+}
+
 nb::list check(const Scenario& scenario) {
   ControllerOptions options = scenario.controller;
   options.limits.enforce_conditions = false;
@@ -181,14 +192,7 @@ void bind_simulation(nb::module_& module) {
   nb::class_<Scenario>(module, "Scenario", "A complete experiment as a YAML file tells it.")
       .def("describe", &describe_scenario)
       .def(
-          "controller",
-          [](const Scenario& scenario) {
-            auto controller = std::make_unique<Controller>(*scenario.robot, scenario.controller);
-            for (const ScenarioTask& task : scenario.tasks) {
-              controller->add(task.level, *task.task);
-            }
-            return controller.release();
-          },
+          "controller", [](const Scenario& scenario) { return new Controller(scenario.build_controller()); },
           nb::rv_policy::take_ownership, "A controller as the scenario describes it, with its tasks.")
       .def_prop_ro("initial", [](const Scenario& scenario) -> Vector { return scenario.initial; });
   module.def("load_scenario", &Scenario::load, "path"_a,
@@ -196,6 +200,8 @@ void bind_simulation(nb::module_& module) {
   module.def("simulate", &simulate, "scenario"_a, "out"_a = nb::none(), "progress"_a = nb::none(),
              "keep_log"_a = true);
   module.def("check", &check, "scenario"_a);
+  module.def("benchmark", &time_cycles, "scenario"_a, "acting"_a = -1,
+             "cycles"_a = BenchmarkOptions{}.cycles);
 }
 
 }  // namespace tope::python

@@ -197,6 +197,8 @@ def simulate(scenario: Scenario, out: str | os.PathLike | None = None, progress:
 
 def check(scenario: Scenario) -> list: ...
 
+def benchmark(scenario: Scenario, acting: int = -1, cycles: int = 200000) -> dict: ...
+
 class LiveSimulation:
     """
     A scenario that never ends and that can be changed while it runs. For one thread.

@@ -16,10 +16,13 @@ from rich.table import Table
 from rich.text import Text
 
 from tope import _core, extras, words
+from tope.bench import HEADER as BENCH_HEADER
+from tope.bench import bench as time_cycles
+from tope.bench import row as bench_row
 from tope.compare import compare as run_comparison
 from tope.compare import known_methods
 from tope.export import export as export_run
-from tope.runs import finite
+from tope.runs import finite, write_json
 from tope.simulation import Progress
 from tope.simulation import simulate as run_scenario
 
@@ -172,6 +175,28 @@ def play(
         port=port,
         ready=lambda address: console.print(pairs([("Open", address), ("End", "Ctrl-C")])),
     )
+
+
+@app.command()
+def bench(
+    cycles: Annotated[int, typer.Option("--cycles", min=1, help="Cycles a case, at least.")] = 200_000,
+    json_file: Annotated[Path | None, typer.Option("--json", metavar="FILE", help="Also write JSON.")] = None,
+) -> None:
+    """Time a cycle of the controller on this machine.
+
+    On the youBot with limits, orientation, position and posture, along recorded closed loops, on one core;
+    the bare rigid-body terms, which any controller needs, are timed at the same states in turn.
+    """
+    with progress_bar("Timing") as progress:
+        figures = time_cycles(cycles, progress)
+    table = Table(*BENCH_HEADER)
+    for case in figures["cases"]:
+        table.add_row(*map(Text, bench_row(case)))
+    console = output()
+    console.print(Text(f"{figures['machine']['processor']}, core {figures['machine']['core']}"))
+    console.print(table)
+    if json_file is not None:
+        write_json(json_file, figures)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -140,7 +140,7 @@ def told(scenario: Mapping[str, Any], state: State, refused: str) -> str:
 def play(
     scenario: str, overrides: Mapping[str, str], *, host: str, port: int, ready: Callable[[str], None]
 ) -> None:
-    """Serve a scenario until SIGINT or SIGTERM; `ready` is called with the page's address. Main thread only."""
+    """Serve a scenario until SIGINT or SIGTERM; `ready` gets the page's address. For the main thread."""
     ended = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):  # a shell lets its background jobs ignore SIGINT otherwise
         signal.signal(number, lambda *_: ended.set())

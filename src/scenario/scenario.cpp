@@ -297,6 +297,14 @@ const Vector& Scenario::command_bound() const {
   return controller.mode == Mode::torque ? robot->effort_limit() : robot->velocity_limit();
 }
 
+Controller Scenario::build_controller() const {
+  Controller built(*robot, controller);
+  for (const ScenarioTask& task : tasks) {
+    built.add(task.level, *task.task);
+  }
+  return built;
+}
+
 Scenario Scenario::load(const std::filesystem::path& file,
                         const std::map<std::string, std::string>& overrides) {
   const YamlReader yaml = YamlReader::load(file, overrides);

@@ -226,3 +226,22 @@ def test_summary_has_what_is_promised(folder):
     assert math.isfinite(summary["max_command_jump"]["overall"])
     assert {"p50", "p99", "p999", "max"} <= set(summary["cycle_time_us"])
     assert all({"final", "at_goal_time"} <= set(error) for error in summary["task_error"].values())
+
+
+def test_bench_times_every_case_beside_the_rigid_body_terms(tope, tmp_path):
+    file = tmp_path / "bench.json"
+    code, out, _ = tope("bench", "--cycles", "200", "--json", str(file))
+    assert code == 0
+    figures = json.loads(file.read_text())
+    assert [(case["mode"], case["transitions"]) for case in figures["cases"]] == [
+        (mode, count) for mode in ("velocity", "torque") for count in (0, 3, 0, 2)
+    ]
+    for case in figures["cases"]:
+        assert case["name"] in out
+        assert (
+            0 < case["rigid_body_us"] < case["p50_us"] <= case["p99_us"] <= case["p999_us"] <= case["max_us"]
+        )
+        assert case["ratio"] == pytest.approx(case["p50_us"] / case["rigid_body_us"])
+        assert case["states"] > 100
+        assert (case["n"], case["levels"]) == (8, 3)
+        assert case["laws"] <= (1 if case["name"].startswith("unilateral") else case["transitions"] + 1)

@@ -217,19 +217,21 @@ def tope(*arguments):
     return [sys.executable, "-m", "tope.cli", "play", VELOCITY, *arguments]
 
 
-def ignore_interrupts():
-    """As a shell does for its background jobs."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+@pytest.fixture
+def interrupts_ignored():
+    """As for a shell's background jobs; processes started meanwhile inherit it."""
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    yield
+    signal.signal(signal.SIGINT, before)
 
 
+@pytest.mark.usefixtures("interrupts_ignored")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_the_command_line_serves_this_machine_alone_and_ends_on_a_signal(number):
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
-    with subprocess.Popen(
-        tope("--port", str(port)), stdout=subprocess.PIPE, text=True, preexec_fn=ignore_interrupts
-    ) as process:
+    with subprocess.Popen(tope("--port", str(port)), stdout=subprocess.PIPE, text=True) as process:
         try:
             wait_for(lambda: process.stdout.readline().startswith("Open"), seconds=30)
             with urllib.request.urlopen(f"http://127.0.0.1:{port}") as answer:

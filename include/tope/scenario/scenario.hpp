@@ -59,6 +59,9 @@ struct Scenario {
   /// Bound of each joint's command (n): of its speed, or of its torque in torque mode.
   const Vector& command_bound() const;
 
+  /// A controller as the scenario describes it, with its tasks. Errors: ConfigError when it refuses its options.
+  Controller build_controller() const;
+
   /// Reads a file, with "--set" overrides (dotted key -> YAML value). Errors: ConfigError naming file, line
   /// and key.
   static Scenario load(const std::filesystem::path& file,
