@@ -22,7 +22,6 @@ import tope
 from tope import words
 
 SCENARIO = Path(__file__).parent / "goals_torque.yaml"
-ROBOT = Path(__file__).parents[1] / "robots/youbot"
 START_POSITION = np.array([0.596, 0.0, 0.354])  # of ee at the scenario's start [m]
 REACHED = 1e-3  # m and rad
 CONTINUOUS = 8.0  # ratio of the largest jumps at dt and dt / 10 from which a command counts as continuous
@@ -87,9 +86,9 @@ def explanation(outcome: Outcome, method: str, extra: dict[str, object]) -> str:
     overrides = {"limits.method": method, **extra, **target(outcome.goal), "dt": 1e-4, "log.every": 1}
     log = tope.simulate(SCENARIO, overrides=overrides).log
     scenario = tope.load_scenario(SCENARIO, overrides)
-    joints = [joint["name"] for joint in scenario.describe()["joints"]]
-    q, v, u = (np.column_stack([log[f"{x}.{name}"] for name in joints]) for x in "qvu")
-    bound = np.array([joint["bound"] for joint in scenario.describe()["joints"]])
+    joints = scenario.describe()["joints"]
+    q, v, u = (np.column_stack([log[f"{x}.{joint['name']}"] for joint in joints]) for x in "qvu")
+    bound = np.array([joint["bound"] for joint in joints])
     k = int(np.abs(np.diff(u / bound, axis=0)).max(axis=1).argmax())
     controller = scenario.controller()
     controller.update(q[0], v[0], 0.0)  # starts the references
@@ -102,7 +101,8 @@ def explanation(outcome: Outcome, method: str, extra: dict[str, object]) -> str:
     changes = []
     for _ in range(24):
         middle = 0.5 * (low + high)
-        lower, upper = (np.abs(command(s) - command(middle)).max() for s in (low, high))
+        there = command(middle)
+        lower, upper = (np.abs(command(s) - there).max() for s in (low, high))
         low, high = (low, middle) if lower > upper else (middle, high)
         changes.append(max(lower, upper))
     steep = changes[-1] < 1e-3 * changes[0]

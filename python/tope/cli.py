@@ -1,4 +1,4 @@
-"""The command line: tope run, tope compare, tope check, tope play, tope export."""
+"""The command line: tope run, compare, check, play, export and bench."""
 
 from __future__ import annotations
 
