@@ -191,6 +191,7 @@ LawOptions Controller::law_options() const {
 void Controller::rebuild() {
   const int n = robot_.nv();
   stack_.motion = whitening_.motion();
+  stack_.motion_is_y = whitening_.is_identity();
   stack_.tasks.clear();
   entry_row_.clear();
   // the field goes to the lowest level that leaves it some freedom: above a task that takes all of it
@@ -198,7 +199,7 @@ void Controller::rebuild() {
   const auto add_field = [&](int level) {
     field_row_ = stack_.tasks.size();
     stack_.tasks.push_back(
-        {.level = level, .activation = 0.0, .a = whitening_.motion(), .b = Vector::Zero(n)});
+        {.level = level, .activation = 0.0, .a = Matrix(n, n), .b = Vector::Zero(n), .is_motion = true});
     field_pending = false;
   };
   int offset = 0;  // makes room for the field's level
@@ -211,7 +212,8 @@ void Controller::rebuild() {
     stack_.tasks.push_back({.level = e.level + offset,
                             .activation = e.activation,
                             .a = Matrix::Zero(e.task->size(), n),
-                            .b = Vector::Zero(e.task->size())});
+                            .b = Vector::Zero(e.task->size()),
+                            .is_motion = e.task->is_motion()});
   }
   if (field_pending) {
     add_field(entries_.empty() ? 1 : entries_.back().level + 1);
@@ -298,7 +300,9 @@ void Controller::fill_tasks(double t) {
       e.task->update(terms_, t);
       rows.b = e.task->rate();
     }
-    whitening_.rows(e.task->jacobian(), rows.a);
+    if (!rows.is_motion) {
+      whitening_.rows(e.task->jacobian(), rows.a);
+    }
     if (e.task->near_flip()) {
       status_.add(Event::near_flip);
     }
@@ -325,7 +329,6 @@ void Controller::fill_field() {
   field_->update(terms_.position());
   TaskRows& rows = stack_.tasks[field_row_];
   rows.activation = field_->in_range() ? 1.0 : 0.0;
-  rows.a = stack_.motion;
   rows.b = field_->motion();
   if (torque_mode()) {  // follow the field's speed
     rows.b = options_.limits.rows.servo_gain * (rows.b - terms_.velocity());
@@ -339,19 +342,28 @@ void Controller::fill_field() {
 
 /// The paper's null space (9): every row pays for the bias of the motion it asks for, and no more is compensated.
 void Controller::leave_bias_to_tasks() {
-  whitening_.from_command(terms_.bias(), bias_y_);
+  bias_y_.noalias() = stack_.motion.transpose() * terms_.bias();
   for (TaskRows& rows : stack_.tasks) {
-    rows.b.noalias() += rows.a * bias_y_;
+    const Matrix& a = rows.is_motion ? stack_.motion : rows.a;
+    rows.b.noalias() += a * bias_y_;
   }
-  limit_motion_.noalias() = stack_.motion * bias_y_;
+  to_motion(bias_y_, limit_motion_);
   stack_.limit_target += limit_motion_;
   stack_.motion_lower += limit_motion_;
   stack_.motion_upper += limit_motion_;
 }
 
+void Controller::to_motion(const Vector& y, Vector& motion) const {
+  if (stack_.motion_is_y) {
+    motion = y;
+  } else {
+    motion.noalias() = stack_.motion * y;
+  }
+}
+
 CommandBounds Controller::bound_velocity() {
-  limit_command_.noalias() = whitening_.command() * solution_.y_limits;
-  command_.noalias() = whitening_.command() * solution_.y;
+  to_motion(solution_.y_limits, limit_command_);
+  to_motion(solution_.y, command_);
   if (uses_limit_rows(options_.limits.method)) {
     limits_.blended_speed_bounds(stack_.limit_activation, command_lower_, command_upper_);
   }
@@ -365,12 +377,12 @@ CommandBounds Controller::bound_torque() {
     solution_.y -= bias_y_;
     solution_.y_limits -= bias_y_;
   }
-  limit_motion_.noalias() = stack_.motion * solution_.y_limits;
-  motion_.noalias() = stack_.motion * solution_.y;
+  to_motion(solution_.y_limits, limit_motion_);
+  to_motion(solution_.y, motion_);
   limit_command_ = terms_.bias();
   command_ = terms_.bias();
-  limit_command_.noalias() += whitening_.command() * solution_.y_limits;
-  command_.noalias() += whitening_.command() * solution_.y;
+  limit_command_.noalias() += terms_.mass_matrix() * limit_motion_;
+  command_.noalias() += terms_.mass_matrix() * motion_;
   if (uses_limit_rows(options_.limits.method)) {
     limits_.blended_acceleration_bounds(stack_.limit_activation, options_.dt,
                                         torque_bounds_.acceleration_lower(),

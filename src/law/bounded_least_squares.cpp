@@ -1,6 +1,4 @@
 #include <tope/law/bounded_least_squares.hpp>
-#include <tope/law/small_cholesky.hpp>
-#include <tope/law/small_product.hpp>
 
 #include <algorithm>
 
@@ -15,49 +13,41 @@ constexpr int kRounds = 6;  // of the primal-dual method, before the dual one ta
 }  // namespace
 
 BoundedLeastSquares::BoundedLeastSquares(int n, int constraints)
-    : factor_(n, n),
-      free_z_(Vector::Zero(n)),
-      z_(Vector::Zero(n)),
-      in_rows_(Vector::Zero(n)),
-      response_(n, n),
+    : gram_(n, n),
+      factor_(n),
+      free_z_(Vector::Zero(PanelMatrix::padded(n))),
+      z_(free_z_),
+      in_rows_(free_z_),
+      in_z_(free_z_),
+      normals_(Matrix::Zero(free_z_.size(), n)),
+      response_(normals_),
       schur_(n, n),
-      held_multiplier_(n),
+      schur_factor_(n),
+      held_multiplier_(free_z_),
       multipliers_(Vector::Zero(constraints)),
-      row_value_(constraints),
+      row_value_(Vector::Zero(PanelMatrix::padded(constraints))),
       dual_(n, constraints),
+      hessian_(n, n),
       padded_d_(Matrix::Zero(constraints, n)),
       no_guess_(static_cast<std::size_t>(constraints), 0) {
   held_.reserve(static_cast<std::size_t>(constraints));
   held_sign_.reserve(static_cast<std::size_t>(constraints));
 }
 
-bool BoundedLeastSquares::solve(const Eigen::Ref<const Matrix>& a, const VectorArg& r, double mu,
-                                const Eigen::Ref<const Matrix>& d, const Vector& lower, const Vector& upper) {
+bool BoundedLeastSquares::solve(const PanelMatrix& a, const Vector& r, double mu, const PanelMatrix& d,
+                                const Vector& lower, const Vector& upper) {
   std::fill(no_guess_.begin(), no_guess_.end(), 0);
   return solve(a, r, mu, d, lower, upper, no_guess_);
 }
 
-bool BoundedLeastSquares::solve(const Eigen::Ref<const Matrix>& a, const VectorArg& r, double mu,
-                                const Eigen::Ref<const Matrix>& d, const Vector& lower, const Vector& upper,
-                                ActiveRows& active) {
+bool BoundedLeastSquares::solve(const PanelMatrix& a, const Vector& r, double mu, const PanelMatrix& d,
+                                const Vector& lower, const Vector& upper, ActiveRows& active) {
   unknowns_ = static_cast<int>(d.cols());
-  factorise(a, mu);
-  auto free_z = free_z_.head(unknowns_);
-  if (by_rows_) {
-    auto weights = in_rows_.head(a.rows());
-    weights = r;
-    const auto factor = factor_.topLeftCorner(a.rows(), a.rows());
-    solve_lower(factor, weights);
-    solve_upper(factor, weights);
-    multiply(a.transpose(), weights, free_z);
-  } else {
-    multiply(a.transpose(), r, free_z);
-    apply_inverse(a, mu, free_z);
-  }
+  minimise_freely(a, r, mu);
   multipliers_.setZero();
-  z_.head(unknowns_) = free_z;
-  multiply(d, z(), row_value_);
-  if ((row_value_.array() <= upper.array()).all() && (row_value_.array() >= lower.array()).all()) {
+  z_ = free_z_;
+  multiply(d, z_.data(), row_value_.data());
+  if ((row_values().array() <= upper.array()).all() && (row_values().array() >= lower.array()).all()) {
     std::fill(active.begin(), active.end(), 0);
     return true;
   }
@@ -80,36 +70,36 @@ bool BoundedLeastSquares::solve(const Eigen::Ref<const Matrix>& a, const VectorA
   return fall_back(a, r, mu, d, lower, upper, active);
 }
 
-/// Factorises the smaller of A A^T + mu I and A^T A + mu I.
-void BoundedLeastSquares::factorise(const Eigen::Ref<const Matrix>& a, double mu) {
+/// By the smaller of A A^T + mu I and A^T A + mu I.
+void BoundedLeastSquares::minimise_freely(const PanelMatrix& a, const Vector& r, double mu) {
   by_rows_ = a.rows() < unknowns_;
-  const Eigen::Index size = by_rows_ ? a.rows() : unknowns_;
-  auto factor = factor_.topLeftCorner(size, size);
+  free_z_.tail(free_z_.size() - unknowns_).setZero();
   if (by_rows_) {
-    multiply(a, a.transpose(), factor);
+    multiply_rows(a, gram_);
+    factor_.factorise(gram_, mu);
+    auto weights = in_rows_.head(PanelMatrix::padded(a.rows()));
+    weights = r.head(weights.size());
+    factor_.solve(weights.data());
+    multiply_transposed(a, weights.data(), free_z_.data());
   } else {
-    multiply(a.transpose(), a, factor);
+    multiply_columns(a, gram_);
+    factor_.factorise(gram_, mu);
+    multiply_transposed(a, r.data(), free_z_.data());
+    factor_.solve(free_z_.data());
   }
-  factor.diagonal().array() += mu;
-  factorise_in_place(factor);
 }
 
 /// z <- (A^T A + mu I)^-1 z, by rows as (z - A^T (A A^T + mu I)^-1 A z) / mu.
-template <typename Out>
-void BoundedLeastSquares::apply_inverse(const Eigen::Ref<const Matrix>& a, double mu, Out&& z) {
+void BoundedLeastSquares::apply_inverse(const PanelMatrix& a, double mu, double* z) {
   if (!by_rows_) {
-    const auto factor = factor_.topLeftCorner(unknowns_, unknowns_);
-    solve_lower(factor, z);
-    solve_upper(factor, z);
+    factor_.solve(z);
     return;
   }
-  const auto factor = factor_.topLeftCorner(a.rows(), a.rows());
-  auto weights = in_rows_.head(a.rows());
-  multiply(a, z, weights);
-  solve_lower(factor, weights);
-  solve_upper(factor, weights);
-  z -= a.transpose().lazyProduct(weights);
-  z /= mu;
+  multiply(a, z, in_rows_.data());
+  factor_.solve(in_rows_.data());
+  multiply_transposed(a, in_rows_.data(), in_z_.data());
+  Eigen::Map<Vector> out(z, unknowns_);
+  out = (out - in_z_.head(unknowns_)) / mu;
 }
 
 void BoundedLeastSquares::gather(const ActiveRows& active) {
@@ -124,37 +114,41 @@ void BoundedLeastSquares::gather(const ActiveRows& active) {
 }
 
 /// The minimum with the held rows at their bounds. False when they depend on each other.
-bool BoundedLeastSquares::hold(const Eigen::Ref<const Matrix>& a, double mu,
-                               const Eigen::Ref<const Matrix>& d, const Vector& lower, const Vector& upper) {
+bool BoundedLeastSquares::hold(const PanelMatrix& a, double mu, const PanelMatrix& d, const Vector& lower,
+                               const Vector& upper) {
   const auto count = static_cast<Eigen::Index>(held_.size());
   if (count > unknowns_) {
     return false;
   }
-  auto response = response_.topLeftCorner(unknowns_, count);
-  auto schur = schur_.topLeftCorner(count, count);
-  auto multiplier = held_multiplier_.head(count);
+  schur_.resize_for_rows(count, count);
+  held_multiplier_.setZero();
   double largest = 0.0;
   for (Eigen::Index i = 0; i < count; ++i) {
     const Eigen::Index row = held_[static_cast<std::size_t>(i)];
-    auto column = response.col(i);
-    column = d.row(row).transpose();
-    apply_inverse(a, mu, column);
-    const double bound = held_sign_[static_cast<std::size_t>(i)] > 0 ? upper[row] : lower[row];
-    multiplier[i] = d.row(row).dot(free_z_.head(unknowns_)) - bound;
-    for (Eigen::Index k = i; k < count; ++k) {
-      schur(k, i) = d.row(held_[static_cast<std::size_t>(k)]).dot(column);
+    auto normal = normals_.col(i);
+    auto response = response_.col(i);
+    normal.tail(normal.size() - unknowns_).setZero();
+    for (Eigen::Index j = 0; j < unknowns_; ++j) {
+      normal[j] = d(row, j);
     }
-    largest = std::max(largest, schur(i, i));
+    response = normal;
+    apply_inverse(a, mu, response.data());
+    const double bound = held_sign_[static_cast<std::size_t>(i)] > 0 ? upper[row] : lower[row];
+    held_multiplier_[i] = normal.dot(free_z_) - bound;
+    for (Eigen::Index k = 0; k <= i; ++k) {
+      schur_(i, k) = normal.dot(response_.col(k));
+    }
+    largest = std::max(largest, schur_(i, i));
   }
-  if (!factorise_in_place(schur, kDependence * largest)) {
+  if (!schur_factor_.factorise(schur_, 0.0, kDependence * largest)) {
     return false;
   }
-  solve_lower(schur, multiplier);
-  solve_upper(schur, multiplier);
-  auto now = z_.head(unknowns_);
-  now = free_z_.head(unknowns_);
-  now -= response.lazyProduct(multiplier);
-  multiply(d, now, row_value_);
+  schur_factor_.solve(held_multiplier_.data());
+  z_ = free_z_;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    z_ -= held_multiplier_[i] * response_.col(i);
+  }
+  multiply(d, z_.data(), row_value_.data());
   return true;
 }
 
@@ -162,7 +156,7 @@ bool BoundedLeastSquares::hold(const Eigen::Ref<const Matrix>& a, double mu,
 bool BoundedLeastSquares::settle(const Vector& lower, const Vector& upper, ActiveRows& active) {
   bool settled = true;
   std::fill(active.begin(), active.end(), 0);
-  for (Eigen::Index i = 0; i < row_value_.size(); ++i) {
+  for (Eigen::Index i = 0; i < multipliers_.size(); ++i) {
     if (row_value_[i] > upper[i] + kFeasibility) {
       active[static_cast<std::size_t>(i)] = 1;
     } else if (row_value_[i] < lower[i] - kFeasibility) {
@@ -180,14 +174,15 @@ bool BoundedLeastSquares::settle(const Vector& lower, const Vector& upper, Activ
   return settled;
 }
 
-bool BoundedLeastSquares::fall_back(const Eigen::Ref<const Matrix>& a, const VectorArg& r, double mu,
-                                    const Eigen::Ref<const Matrix>& d, const Vector& lower,
-                                    const Vector& upper, ActiveRows& active) {
-  padded_d_.leftCols(unknowns_) = d;
+bool BoundedLeastSquares::fall_back(const PanelMatrix& a, const Vector& r, double mu, const PanelMatrix& d,
+                                    const Vector& lower, const Vector& upper, ActiveRows& active) {
+  multiply_columns(a, hessian_);
+  multiply_transposed(a, r.data(), in_z_.data());
+  d.copy_to(padded_d_.leftCols(unknowns_));
   padded_d_.rightCols(padded_d_.cols() - unknowns_).setZero();
-  const bool solved = dual_.solve(a, r, mu, padded_d_, lower, upper);
-  z_ = dual_.z();
-  multiply(d, z(), row_value_);
+  const bool solved = dual_.solve(hessian_, in_z_, mu, padded_d_, lower, upper);
+  z_.head(unknowns_) = dual_.z().head(unknowns_);
+  multiply(d, z_.data(), row_value_.data());
   multipliers_ = dual_.multipliers();
   for (std::size_t i = 0; i < active.size(); ++i) {
     const double multiplier = multipliers_[static_cast<Eigen::Index>(i)];

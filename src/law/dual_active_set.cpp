@@ -30,9 +30,9 @@ DualActiveSet::DualActiveSet(int n, int constraints)
       multipliers_(Vector::Zero(constraints)),
       row_value_(constraints) {}
 
-bool DualActiveSet::solve(const Eigen::Ref<const Matrix>& a, const VectorArg& r, double mu, const Matrix& d,
+bool DualActiveSet::solve(const PanelMatrix& gram, const Vector& gradient, double mu, const Matrix& d,
                           const Vector& lower, const Vector& upper) {
-  start(a, r, mu);
+  start(gram, gradient, mu);
   iterations_left_ = kIterationsPerUnknown * static_cast<int>(z_.size());
   bool solved = true;
   while (solved) {
@@ -55,15 +55,19 @@ bool DualActiveSet::solve(const Eigen::Ref<const Matrix>& a, const VectorArg& r,
 }
 
 /// The unconstrained minimum, and the inverse factor of the Hessian as the first basis.
-void DualActiveSet::start(const Eigen::Ref<const Matrix>& a, const VectorArg& r, double mu) {
+void DualActiveSet::start(const PanelMatrix& gram, const Vector& gradient, double mu) {
   hessian_.setZero();
-  hessian_.diagonal().setConstant(mu);
-  hessian_.topLeftCorner(a.cols(), a.cols()).noalias() += a.transpose() * a;
+  for (Eigen::Index j = 0; j < gram.cols(); ++j) {
+    for (Eigen::Index i = j; i < gram.rows(); ++i) {
+      hessian_(i, j) = gram(i, j);
+    }
+  }
+  hessian_.diagonal().array() += mu;
   const Eigen::LLT<Eigen::Ref<Matrix>> cholesky(hessian_);
   basis_.setIdentity();
   cholesky.matrixU().solveInPlace(basis_);
   z_.setZero();
-  z_.head(a.cols()).noalias() = a.transpose() * r;
+  z_.head(gram.rows()) = gradient.head(gram.rows());
   cholesky.solveInPlace(z_);
   active_ = 0;
 }

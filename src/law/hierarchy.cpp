@@ -1,7 +1,5 @@
 #include <tope/common/error.hpp>
 #include <tope/law/hierarchy.hpp>
-#include <tope/law/small_cholesky.hpp>
-#include <tope/law/small_product.hpp>
 #include <tope/law/smooth_step.hpp>
 
 #include <algorithm>
@@ -14,24 +12,30 @@ int workspace_rows(const Stack& stack) { return std::max(stack.size(), stack.max
 
 }  // namespace
 
+Hierarchy::Level::Level(const Stack& stack, int max_rows)
+    : given(stack.size(), max_rows), metric(max_rows, max_rows), factor(max_rows) {}
+
 Hierarchy::Hierarchy(const Stack& stack, const Options& options)
     : options_(options),
-      gathered_(stack.size(), workspace_rows(stack)),
-      partial_{.first = 0,
-               .last = 0,
-               .rows = Matrix(workspace_rows(stack), stack.size()),
-               .target = Vector(workspace_rows(stack)),
-               .ready = false},
-      eigen_(workspace_rows(stack)),
-      open_(stack.size(), workspace_rows(stack)),
+      partial_(stack, workspace_rows(stack)),
+      spectrum_(stack.size()),
+      held_(static_cast<std::size_t>(stack.size()), 0),
+      held_target_(stack.size()),
+      held_open_(stack.size()),
+      held_y_(Vector::Zero(PanelMatrix::padded(stack.size()))),
+      open_(stack.size()),
+      motion_(stack.size(), stack.size()),
+      limit_row_(1, stack.size()),
       task_(workspace_rows(stack), stack.size()),
       gram_(workspace_rows(stack), workspace_rows(stack)),
-      factor_(workspace_rows(stack), workspace_rows(stack)),
-      turned_(workspace_rows(stack), stack.size()),
-      residual_(workspace_rows(stack)),
-      weights_(workspace_rows(stack)),
-      step_(stack.size()),
-      share_(workspace_rows(stack)) {
+      excess_(workspace_rows(stack), workspace_rows(stack)),
+      factor_(workspace_rows(stack)),
+      clear_(workspace_rows(stack)),
+      y_(held_y_),
+      residual_(Vector::Zero(PanelMatrix::padded(workspace_rows(stack)))),
+      weights_(residual_),
+      step_(residual_),
+      shares_(stack.size()) {
   if (!(0.0 < options.locked_above && options.locked_above < options.damped_below &&
         options.damped_below < 1.0 && options.epsilon > 0.0)) {
     throw ConfigError(
@@ -43,13 +47,11 @@ Hierarchy::Hierarchy(const Stack& stack, const Options& options)
     std::size_t last = first;
     Eigen::Index rows = 0;
     for (; last < stack.tasks.size() && stack.tasks[last].level == stack.tasks[first].level; ++last) {
-      rows += stack.tasks[last].a.rows();
+      rows += stack.tasks[last].b.size();
     }
-    levels_.push_back({.first = first,
-                       .last = last,
-                       .rows = Matrix(rows, stack.size()),
-                       .target = Vector(rows),
-                       .ready = false});
+    Level& level = levels_.emplace_back(stack, static_cast<int>(rows));
+    level.first = first;
+    level.last = last;
     first = last;
   }
 }
@@ -58,6 +60,7 @@ void Hierarchy::begin() {
   for (Level& level : levels_) {
     level.ready = false;
   }
+  release_limits();
 }
 
 void Hierarchy::solve(const Stack& stack, const Selection& selection, Solution& solution) {
@@ -68,8 +71,10 @@ void Hierarchy::solve(const Stack& stack, const Selection& selection, const Vect
                       Solution& solution) {
   solution.set_zero();
   solution.laws = 1;
-  add_limits(stack, selection, limit_target, solution.y);
-  solution.y_limits = solution.y;
+  hold_limits(stack, selection, limit_target);
+  open_.reset(held_open_);
+  y_ = held_y_;
+  solution.y_limits = held_y_.head(stack.size());
   for (Level& level : levels_) {
     const auto begin = selection.tasks.begin() + static_cast<std::ptrdiff_t>(level.first);
     const auto end = selection.tasks.begin() + static_cast<std::ptrdiff_t>(level.last);
@@ -78,171 +83,183 @@ void Hierarchy::solve(const Stack& stack, const Selection& selection, const Vect
       continue;
     }
     const bool last = level.last == stack.tasks.size();
-    if (selected == end - begin) {
-      if (!level.ready) {
-        whiten(stack, selection, level.first, level.rows, level.target);
-        level.ready = true;
-      }
-      add_level(level.rows, level.target, last, solution);
-    } else {
-      whiten(stack, selection, level.first, partial_.rows, partial_.target);
-      const int m = gathered_.rows();
-      add_level(partial_.rows.topRows(m), partial_.target.head(m), last, solution);
+    const bool complete = selected == end - begin;
+    Level& chosen = complete ? level : partial_;
+    if (!complete || !level.ready) {
+      chosen.first = level.first;
+      prepare(stack, selection, chosen);
+    }
+    add_level(stack, chosen, last, solution);
+  }
+  solution.y = y_.head(stack.size());
+}
+
+/// Level 0. The selections of a chain grow: what is held already stays.
+void Hierarchy::hold_limits(const Stack& stack, const Selection& selection, const Vector& limit_target) {
+  for (std::size_t j = 0; j < held_.size(); ++j) {
+    const auto joint = static_cast<Eigen::Index>(j);
+    if (held_[j] != 0 && (selection.limits[j] == 0 || held_target_[joint] != limit_target[joint])) {
+      release_limits();
+      break;
+    }
+  }
+  for (std::size_t j = 0; j < held_.size(); ++j) {
+    if (selection.limits[j] != 0 && held_[j] == 0) {
+      const auto joint = static_cast<Eigen::Index>(j);
+      hold_limit(stack, joint, limit_target[joint]);
     }
   }
 }
 
-void Hierarchy::add_limits(const Stack& stack, const Selection& selection, const Vector& limit_target,
-                           Vector& y) {
-  open_.reset();
-  Eigen::Index m = 0;
-  for (Eigen::Index joint = 0; joint < stack.size(); ++joint) {
-    if (selection.limits[static_cast<std::size_t>(joint)] != 0) {
-      task_.row(m) = stack.motion.row(joint);
-      residual_[m] = limit_target[joint];
-      ++m;
-    }
-  }
-  if (m == 0) {
-    return;
-  }
-  const auto rows = task_.topRows(m);
-  auto targets = residual_.head(m);
-  auto gram = gram_.topLeftCorner(m, m);
-  multiply(rows, rows.transpose(), gram);
-  factorise_in_place(gram);
-  solve_lower(gram, targets);
-  solve_upper(gram, targets);
-  multiply(rows.transpose(), targets, y);
-  open_.close(rows);
+void Hierarchy::release_limits() {
+  std::fill(held_.begin(), held_.end(), 0);
+  held_open_.reset();
+  held_y_.setZero();
 }
 
-/// Rows and target of the selected tasks of a level in the metric B^-1.
-void Hierarchy::whiten(const Stack& stack, const Selection& selection, std::size_t first, Matrix& rows,
-                       Vector& target) {
-  gathered_.gather(stack, selection, first);
-  const int m = gathered_.rows();
-  auto gram = gram_.topLeftCorner(m, m);
-  multiply(gathered_.a(), gathered_.a().transpose(), gram);
-  gram.diagonal().array() += options_.epsilon * options_.epsilon;
-  factorise_in_place(gram);
-  rows.topRows(m) = gathered_.a();
-  target.head(m) = gathered_.b();
-  for (Eigen::Index j = 0; j < rows.cols(); ++j) {
-    solve_lower(gram, rows.col(j).head(m));
+/// One more limit row, in the directions that those before it leave: no damping, the rows are independent.
+void Hierarchy::hold_limit(const Stack& stack, Eigen::Index joint, double target) {
+  held_[static_cast<std::size_t>(joint)] = 1;
+  held_target_[joint] = target;
+  limit_row_.set_rows(0, stack.motion.row(joint));
+  const PanelMatrix& row = held_open_.project(limit_row_, task_);
+  double squared = 0.0;
+  for (Eigen::Index j = 0; j < row.cols(); ++j) {
+    step_[j] = row(0, j);
+    squared += row(0, j) * row(0, j);
   }
-  solve_lower(gram, target.head(m));
+  const double missing = target - stack.motion.row(joint).dot(held_y_.head(stack.size()));
+  step_.head(row.cols()) *= missing / squared;
+  add_product(held_open_.columns(), step_.data(), held_y_.data());
+  held_open_.close(row);
 }
 
-void Hierarchy::add_level(const Eigen::Ref<const Matrix>& rows, const VectorArg& target, bool last,
-                          Solution& solution) {
-  const auto m = static_cast<int>(rows.rows());
+/// The selected tasks of a level and their metric B.
+void Hierarchy::prepare(const Stack& stack, const Selection& selection, Level& level) {
+  level.given.gather(stack, selection, level.first);
+  level.ready = true;
+  level.factorised = false;
+  if (level.given.is_motion() && stack.motion_is_y) {
+    return;  // B = (1 + eps^2) I
+  }
+  if (level.given.is_motion()) {
+    motion_.resize_for_rows(stack.size(), stack.size());
+    motion_.set_rows(0, stack.motion);
+  }
+  multiply_rows(rows(level), level.metric);
+  for (Eigen::Index i = 0; i < level.metric.rows(); ++i) {
+    level.metric(i, i) += options_.epsilon * options_.epsilon;
+  }
+}
+
+const PanelMatrix& Hierarchy::rows(const Level& level) const {
+  return level.given.is_motion() ? motion_ : level.given.a();
+}
+
+void Hierarchy::add_level(const Stack& stack, Level& level, bool last, Solution& solution) {
+  const int m = level.given.rows();
   // a level that asks for all the freedom there is always loses some to the levels above it
-  const bool partial = m < rows.cols();
-  if (open_.size() < m) {
-    solution.singular = solution.singular || partial;
-  }
+  const bool partial = m < stack.size();
+  const bool crowded = open_.size() < m;
+  solution.singular = solution.singular || (partial && crowded);
   if (open_.size() == 0) {
     return;
   }
-  auto residual = residual_.head(m);
-  residual = target;
-  residual -= rows.lazyProduct(solution.y);
-  open_.project(rows, task_.topLeftCorner(m, open_.size()));
-  if (m <= open_.size()) {
-    add_wide_level(m, last, solution);
+  const bool plain = level.given.is_motion() && stack.motion_is_y;
+  const PanelMatrix& task = plain ? open_.columns() : open_.project(rows(level), task_);
+  const Eigen::Index padded = PanelMatrix::padded(m);
+  residual_.head(padded) = level.given.b().head(padded);
+  if (plain) {
+    residual_.head(padded) -= y_;
   } else {
-    add_tall_level(m, last, solution);
+    subtract_product(rows(level), y_.data(), residual_.data());
   }
-}
-
-/// No more rows than open directions: by G (m x m).
-void Hierarchy::add_wide_level(int m, bool last, Solution& solution) {
-  const auto task = task_.topLeftCorner(m, open_.size());
-  auto residual = residual_.head(m);
-  auto weights = weights_.head(m);
-  auto step = step_.head(open_.size());
-  auto gram = gram_.topLeftCorner(m, m);
-  auto factor = factor_.topLeftCorner(m, m);
-  multiply(task, task.transpose(), gram);
-  factor = gram;
-  factor.diagonal().array() -= options_.damped_below;
-  if (factorise_in_place(factor)) {  // every rho > rho_0: the undamped law
-    factor = gram;
-    factorise_in_place(factor);
-    solve_lower(factor, residual);
-    solve_upper(factor, residual);
-    multiply(task.transpose(), residual, step);
-    solution.y += open_.columns().lazyProduct(step);
-    if (!last) {
-      open_.close(task);
-    }
+  const double rho = 1.0 / (1.0 + options_.epsilon * options_.epsilon);  // of all directions, if plain:
+  if (plain && open_.orthonormal() && rho > options_.damped_below) {
+    multiply_transposed(task, residual_.data(), step_.data());
+    add_product(task, step_.data(), y_.data());
+    open_.close_all();
     return;
   }
-  const SymmetricEigen::Solver& eigen = eigen_.compute(gram);
-  solution.singular = solution.singular || m < open_.columns().rows();
-  auto turned = turned_.topLeftCorner(m, open_.size());
-  multiply(eigen.eigenvectors().transpose(), task, turned);
-  multiply(eigen.eigenvectors().transpose(), residual, weights);
-  auto share = share_.head(m);
-  for (Eigen::Index i = 0; i < m; ++i) {
-    const double rho = std::max(0.0, eigen.eigenvalues()[i]);
-    weights[i] /= damped(rho);
-    // (1 - sqrt(1 - s)) / rho, which tends to 0 with rho
-    const double closed = smooth_step(rho / options_.locked_above);
-    share[i] = rho > 1e-12 ? (1.0 - std::sqrt(1.0 - closed)) / rho : 0.0;
-  }
-  multiply(turned.transpose(), weights, step);
-  solution.y += open_.columns().lazyProduct(step);
-  if (!last) {
-    open_.fade(turned, share);
-  }
-}
-
-/// More rows than open directions: by the twin of G with the same spectrum, less its zeros (d x d).
-void Hierarchy::add_tall_level(int m, bool last, Solution& solution) {
-  const int d = open_.size();
-  const auto task = task_.topLeftCorner(m, d);
-  auto gram = gram_.topLeftCorner(d, d);
-  auto factor = factor_.topLeftCorner(d, d);
-  auto step = step_.head(d);
-  multiply(task.transpose(), task, gram);
-  multiply(task.transpose(), residual_.head(m), step);
-  factor = gram;
-  factor.diagonal().array() -= options_.damped_below;
-  if (factorise_in_place(factor)) {
-    factor = gram;
-    factorise_in_place(factor);
-    solve_lower(factor, step);
-    solve_upper(factor, step);
-    solution.y += open_.columns().lazyProduct(step);
-    if (!last) {
-      open_.close_all();
-    }
+  if (!crowded && !plain && add_undamped(task, level, last)) {
     return;
   }
-  const SymmetricEigen::Solver& eigen = eigen_.compute(gram);
-  auto weights = weights_.head(d);
-  auto turned = turned_.topLeftCorner(d, d);
-  auto share = share_.head(d);
-  turned = eigen.eigenvectors().transpose();
-  multiply(turned, step, weights);
-  for (Eigen::Index i = 0; i < d; ++i) {
-    const double rho = std::max(0.0, eigen.eigenvalues()[i]);
-    weights[i] /= damped(rho);
-    share[i] = 1.0 - std::sqrt(1.0 - smooth_step(rho / options_.locked_above));
+  if (&task != &task_) {
+    task_.assign(task);
   }
-  multiply(turned.transpose(), weights, step);
-  solution.y += open_.columns().lazyProduct(step);
-  if (!last) {
-    open_.fade(turned, share);
-  }
+  whiten(plain, level);
+  const bool clear = add_whitened(last);
+  solution.singular = solution.singular || (partial && !clear);
 }
 
-/// 1 / g(rho).
-double Hierarchy::damped(double rho) const {
-  const double deficit = std::max(0.0, 1.0 - rho / options_.damped_below);
-  return rho + options_.damped_below * deficit * deficit;
+/// The undamped law, in which no metric matters. False, and nothing is done, unless every rho > rho_0.
+bool Hierarchy::add_undamped(const PanelMatrix& task, const Level& level, bool last) {
+  multiply_rows(task, gram_);
+  subtract(gram_, options_.damped_below, level.metric, excess_);
+  if (!clear_.factorise(excess_) || !factor_.factorise(gram_)) {
+    return false;
+  }
+  factor_.solve(residual_.data());
+  multiply_transposed(task, residual_.data(), step_.data());
+  add_product(open_.columns(), step_.data(), y_.data());
+  if (!last) {
+    open_.close(task);
+  }
+  return true;
+}
+
+/// Turns A Z and what is missing into the metric B^-1; B = (1 + eps^2) I if `plain`.
+void Hierarchy::whiten(bool plain, Level& level) {
+  if (plain) {
+    const double weight = 1.0 / std::sqrt(1.0 + options_.epsilon * options_.epsilon);
+    scale(task_, weight);
+    residual_ *= weight;
+    return;
+  }
+  if (!level.factorised) {
+    level.factor.factorise(level.metric);
+    level.factorised = true;
+  }
+  level.factor.whiten(task_);
+  level.factor.whiten(residual_.data());
+}
+
+/// By the spectrum of G where some rho <= rho_0 (false then), or where there are more rows than directions are open.
+bool Hierarchy::add_whitened(bool last) {
+  const bool by_rows = task_.rows() < task_.cols();
+  by_rows ? multiply_rows(task_, gram_) : multiply_columns(task_, gram_);
+  const bool clear = !by_rows && clear_.factorise(gram_, -options_.damped_below);
+  clear ? minimise() : minimise_damped();
+  add_product(open_.columns(), step_.data(), y_.data());
+  if (!last && clear) {
+    open_.close_all();
+  } else if (!last) {
+    open_.close(spectrum_, shares_);
+  }
+  return clear;
+}
+
+/// Least squares in all open directions.
+void Hierarchy::minimise() {
+  factor_.factorise(gram_);
+  step_.setZero();
+  multiply_transposed(task_, residual_.data(), step_.data());
+  factor_.solve(step_.data());
+}
+
+/// Each direction by its own gain, with its share of what is to be closed.
+void Hierarchy::minimise_damped() {
+  spectrum_.compute(task_, gram_);
+  spectrum_.components(task_, residual_, weights_);
+  auto step = step_.head(task_.cols());
+  step.setZero();
+  for (int i = 0; i < spectrum_.size(); ++i) {
+    const double rho = spectrum_.squared(i);
+    const double deficit = std::max(0.0, 1.0 - rho / options_.damped_below);
+    const double damped = rho + options_.damped_below * deficit * deficit;  // 1 / g(rho)
+    step += weights_[i] / damped * Eigen::Map<const Vector>(spectrum_.direction(i), task_.cols());
+    shares_[i] = 1.0 - std::sqrt(1.0 - smooth_step(rho / options_.locked_above));
+  }
 }
 
 }  // namespace tope

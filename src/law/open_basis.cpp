@@ -1,88 +1,96 @@
 #include <tope/law/open_basis.hpp>
-#include <tope/law/small_product.hpp>
 
 #include <cmath>
 
 namespace tope {
 
-OpenBasis::OpenBasis(int n, int max_rows)
-    : size_(n),
-      turned_from_(n),
-      open_(Matrix::Identity(n, n)),
-      next_open_(n, n),
-      reflectors_(n, n),
-      scale_(n),
-      turn_(n, n),
-      faded_(n, max_rows) {}
+OpenBasis::OpenBasis(int n) : open_(n, n), image_(n, n), rows_(n, n), reflector_(n) { reset(); }
 
 void OpenBasis::reset() {
-  size_ = static_cast<int>(open_.rows());
   whole_ = true;
-  open_.setIdentity();
+  orthonormal_ = true;
+  with_image_ = false;
+  open_.set_identity(reflector_.size());
 }
 
-void OpenBasis::project(const Eigen::Ref<const Matrix>& a, Eigen::Ref<Matrix> out) const {
-  if (whole_) {
-    out = a;
-  } else {
-    multiply(a, columns(), out);
-  }
+void OpenBasis::reset(const OpenBasis& other) {
+  whole_ = other.whole_;
+  orthonormal_ = other.orthonormal_;
+  with_image_ = false;
+  open_.assign(other.open_);
 }
 
-void OpenBasis::close(const Eigen::Ref<const Matrix>& b) {
-  const auto rank = static_cast<int>(b.rows());
-  reflect(b);
-  form_turn(rank);
-  auto next = next_open_.leftCols(size_ - rank);
-  const auto turned = turn_.topLeftCorner(size_, size_ - rank);
+void OpenBasis::reset(const Matrix& t) {
+  reset();
+  with_image_ = true;
+  image_.resize_for_rows(t.rows(), t.cols());
+  image_.set_rows(0, t);
+}
+
+const PanelMatrix& OpenBasis::project(const PanelMatrix& a, PanelMatrix& workspace) const {
   if (whole_) {
-    next = turned;
-  } else {
-    multiply(columns(), turned, next);
+    return a;
   }
-  open_.swap(next_open_);
-  turned_from_ = size_;
-  size_ -= rank;
+  multiply(a, open_, workspace);
+  return workspace;
+}
+
+void OpenBasis::close(const PanelMatrix& b) {
+  rows_.assign(b);
+  close_rows();
+}
+
+/// Householder reflections bring the rows to lower triangular form, Z along with them; its leading columns are then
+/// theirs.
+void OpenBasis::close_rows() {
+  const Eigen::Index rank = rows_.rows();
+  for (Eigen::Index i = 0; i < rank; ++i) {
+    const double* row = &rows_(i, i);
+    const Eigen::Index count = rows_.cols() - i;
+    double even = 0.0;  // two sums, as each waits for its last term
+    double odd = 0.0;
+    for (Eigen::Index j = 0; j < count; ++j) {
+      const double value = row[PanelMatrix::height * j];
+      reflector_[j] = value;
+      (j % 2 == 0 ? even : odd) += value * value;
+    }
+    const double norm = std::sqrt(even + odd);
+    const double pivot = reflector_[0] + std::copysign(norm, reflector_[0]);
+    reflector_[0] = pivot;
+    const double factor = 1.0 / (norm * std::abs(pivot));  // 2 / |reflector|^2
+    if (i + 1 < rank) {
+      turn(rows_, i, reflector_.data(), factor);
+    }
+    turn_all(i, reflector_.data(), factor);
+  }
+  drop(rank);
+}
+
+void OpenBasis::close(const RowSpectrum& spectrum, const Vector& shares) {
+  constexpr double nothing = 1e-16;
+  rows_.resize(0, size());
+  for (int i = 0; i < spectrum.size(); ++i) {
+    if (shares[i] >= 1.0) {
+      rows_.append_row(spectrum.direction(i));
+    } else if (shares[i] > nothing) {
+      turn_all(0, spectrum.direction(i), shares[i] / spectrum.squared(i));
+      orthonormal_ = false;
+    }
+  }
+  close_rows();  // v_i are orthogonal: the shares taken before leave these as they are
+}
+
+void OpenBasis::turn_all(Eigen::Index first, const double* v, double factor) {
+  turn(open_, first, v, factor);
+  if (with_image_) {
+    turn(image_, first, v, factor);
+  }
   whole_ = false;
 }
 
-/// Householder reflections that bring B^T to triangular form.
-void OpenBasis::reflect(const Eigen::Ref<const Matrix>& b) {
-  const Eigen::Index rank = b.rows();
-  auto columns = reflectors_.topLeftCorner(size_, rank);
-  columns = b.transpose();
-  for (Eigen::Index k = 0; k < rank; ++k) {
-    auto pivot = columns.col(k).tail(size_ - k);
-    pivot[0] += std::copysign(pivot.norm(), pivot[0]);
-    scale_[k] = 2.0 / pivot.squaredNorm();
-    for (Eigen::Index j = k + 1; j < rank; ++j) {
-      auto column = columns.col(j).tail(size_ - k);
-      column -= (scale_[k] * pivot.dot(column)) * pivot;
-    }
-  }
-}
-
-/// Q_2: the reflections' product applied to the last columns of the identity.
-void OpenBasis::form_turn(int rank) {
-  const int left = size_ - rank;
-  auto turn = turn_.topLeftCorner(size_, left);
-  turn.setZero();
-  turn.bottomRows(left).setIdentity();
-  for (int k = rank - 1; k >= 0; --k) {
-    const auto reflector = reflectors_.col(k).segment(k, size_ - k);
-    for (int j = 0; j < left; ++j) {
-      auto column = turn.col(j).tail(size_ - k);
-      column -= (scale_[k] * reflector.dot(column)) * reflector;
-    }
-  }
-}
-
-void OpenBasis::fade(const Eigen::Ref<const Matrix>& rows, const VectorArg& factors) {
-  auto faded = faded_.leftCols(rows.rows());
-  multiply(columns(), rows.transpose(), faded);
-  faded *= factors.asDiagonal();
-  open_.leftCols(size_) -= faded.lazyProduct(rows);
-  whole_ = false;
+void OpenBasis::drop(Eigen::Index count) {
+  open_.drop_front(count);
+  image_.drop_front(count);
 }
 
 }  // namespace tope

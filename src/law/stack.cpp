@@ -15,7 +15,7 @@ int Stack::max_level_rows() const {
   int largest = 0;
   int rows = 0;
   for (std::size_t i = 0; i < tasks.size(); ++i) {
-    rows = (i > 0 && tasks[i].level == tasks[i - 1].level ? rows : 0) + static_cast<int>(tasks[i].a.rows());
+    rows = (i > 0 && tasks[i].level == tasks[i - 1].level ? rows : 0) + static_cast<int>(tasks[i].b.size());
     largest = std::max(largest, rows);
   }
   return largest;

@@ -1,8 +1,7 @@
 #include "../common/require_positive.hpp"
 
 #include <tope/common/error.hpp>
-#include <tope/law/small_cholesky.hpp>
-#include <tope/law/small_product.hpp>
+#include <tope/law/smooth_step.hpp>
 #include <tope/law/unilateral.hpp>
 
 #include <algorithm>
@@ -19,23 +18,19 @@ Unilateral::Unilateral(const Stack& stack, const Options& options)
     : options_(options),
       rows_(stack.size(), workspace_rows(stack)),
       solver_(stack.size(), stack.size()),
-      eigen_(workspace_rows(stack)),
-      open_(stack.size(), workspace_rows(stack)),
-      motion_(stack.size(), stack.size()),
-      next_motion_(stack.size(), stack.size()),
+      clear_(stack.size()),
+      spectrum_(stack.size()),
+      open_(stack.size()),
       task_(workspace_rows(stack), stack.size()),
-      task_gram_(workspace_rows(stack), workspace_rows(stack)),
-      factor_(workspace_rows(stack), workspace_rows(stack)),
-      turned_task_(workspace_rows(stack), stack.size()),
-      share_(workspace_rows(stack)),
-      residual_(workspace_rows(stack)),
-      motion_at_y_(stack.size()),
+      shares_(stack.size()),
+      residual_(Vector::Zero(PanelMatrix::padded(workspace_rows(stack)))),
+      y_(Vector::Zero(PanelMatrix::padded(stack.size()))),
+      motion_(y_),
       lower_(stack.size()),
       upper_(stack.size()),
       active_(stack.tasks.size() + 1,
               BoundedLeastSquares::ActiveRows(static_cast<std::size_t>(stack.size()), 0)),
-      no_rows_(0, stack.size()),
-      no_residual_(0) {
+      no_rows_(0, stack.size()) {
   require_positive("unilateral: damping", options.damping);
   require_positive("unilateral: fine_damping", options.fine_damping);
   require_positive("unilateral: fine_below", options.fine_below);
@@ -50,9 +45,14 @@ Unilateral::Unilateral(const Stack& stack, const Options& options)
 void Unilateral::solve(const Stack& stack, const Selection& selection, Solution& solution) {
   solution.set_zero();
   solution.laws = 1;
-  solve_limits(stack, solution);
-  open_.reset();
-  motion_ = stack.motion;
+  if (stack.motion_is_y) {
+    open_.reset();
+  } else {
+    open_.reset(stack.motion);
+  }
+  motion_.setZero();
+  set_bounds(stack, 0);
+  solve_limits(solution);
   std::size_t position = 1;
   for (std::size_t i = 0; i < stack.tasks.size(); ++position) {
     const int level = stack.tasks[i].level;
@@ -61,50 +61,57 @@ void Unilateral::solve(const Stack& stack, const Selection& selection, Solution&
       continue;
     }
     set_bounds(stack, level);
-    solve_level(position, solution);
+    const PanelMatrix& task = open_task();
+    const bool solved = solve_level(task, position);
+    solution.cut_off = solution.cut_off || !solved;
     const bool last = i == stack.tasks.size();
     const bool partial = rows_.rows() < stack.size();
     if (last && !partial) {
       continue;
     }
-    const bool clear = all_directions_clear();
+    const bool clear = all_directions_clear(task);
     // a level that asks for all the freedom there is always loses some to the levels above it
     solution.singular = solution.singular || (!clear && partial);
     if (!last && clear) {
-      lock_fully();
+      open_.close(task);
     } else if (!last) {
-      lock_gradually(stack);
+      lock_gradually(task);
     }
   }
+  solution.y = y_.head(stack.size());
 }
 
 /// Level 0: the least-norm point inside the bounds, which is zero unless a joint is to be led back.
-void Unilateral::solve_limits(const Stack& stack, Solution& solution) {
-  motion_at_y_.setZero();
-  set_bounds(stack, 0);
+void Unilateral::solve_limits(Solution& solution) {
+  y_.setZero();
   if (lower_.maxCoeff() <= 0.0 && upper_.minCoeff() >= 0.0) {
     return;
   }
-  solution.cut_off =
-      !solver_.solve(no_rows_, no_residual_, 1.0, stack.motion, lower_, upper_, active_.front());
-  solution.y = solver_.z();
-  solution.y_limits = solution.y;
-  motion_at_y_ = solver_.row_values();
+  solution.cut_off = !solver_.solve(no_rows_, residual_, 1.0, open_.image(), lower_, upper_, active_.front());
+  y_.head(solver_.z().size()) = solver_.z();
+  motion_.head(lower_.size()) = solver_.row_values();
+  solution.y_limits = solver_.z();
 }
 
-/// What the gathered rows want beyond y, in the directions that are open.
-void Unilateral::solve_level(std::size_t position, Solution& solution) {
-  const int m = rows_.rows();
-  auto task = task_.topLeftCorner(m, open_.size());
-  auto residual = residual_.head(m);
-  open_.project(rows_.a(), task);
-  residual = rows_.b();
-  residual -= rows_.a().lazyProduct(solution.y);
-  const bool solved = solver_.solve(task, residual, squared_damping(residual.squaredNorm()),
-                                    motion_.leftCols(open_.size()), lower_, upper_, active_[position]);
-  solution.cut_off = solution.cut_off || !solved;
-  solution.y += open_.columns().lazyProduct(solver_.z());
-  motion_at_y_ += solver_.row_values();
+/// A M for the gathered rows.
+const PanelMatrix& Unilateral::open_task() {
+  return rows_.is_motion() ? open_.image() : open_.project(rows_.a(), task_);
+}
+
+/// What the gathered rows want beyond y, in the directions that are open. False when cut off.
+bool Unilateral::solve_level(const PanelMatrix& task, std::size_t position) {
+  const Eigen::Index padded = PanelMatrix::padded(rows_.rows());
+  residual_.head(padded) = rows_.b().head(padded);
+  if (rows_.is_motion()) {
+    residual_.head(padded) -= motion_;
+  } else {
+    subtract_product(rows_.a(), y_.data(), residual_.data());
+  }
+  const bool solved = solver_.solve(task, residual_, squared_damping(residual_.head(padded).squaredNorm()),
+                                    open_.image(), lower_, upper_, active_[position]);
+  add_product(open_.columns(), solver_.z().data(), y_.data());
+  motion_.head(lower_.size()) += solver_.row_values();
+  return solved;
 }
 
 double Unilateral::squared_damping(double squared_residual) const {
@@ -117,45 +124,23 @@ double Unilateral::squared_damping(double squared_residual) const {
 /// Bounds on T M z: the stack's, tightened by the level's headroom, less what y already uses.
 void Unilateral::set_bounds(const Stack& stack, int level) {
   const double headroom = options_.headroom / (1.0 + level);
-  lower_ = (stack.motion_lower - motion_at_y_).array() + headroom;
-  upper_ = (stack.motion_upper - motion_at_y_).array() - headroom;
+  const auto motion = motion_.head(stack.size());
+  lower_ = (stack.motion_lower - motion).array() + headroom;
+  upper_ = (stack.motion_upper - motion).array() - headroom;
 }
 
-/// Computes A M M^T A^T; true when every sigma exceeds the lock.
-bool Unilateral::all_directions_clear() {
-  const int m = rows_.rows();
-  const auto task = task_.topLeftCorner(m, open_.size());
-  auto gram = task_gram_.topLeftCorner(m, m);
-  auto factor = factor_.topLeftCorner(m, m);
-  multiply(task, task.transpose(), gram);
-  factor = gram;
-  factor.diagonal().array() -= options_.lock * options_.lock;
-  return m <= open_.size() && factorise_in_place(factor);
-}
-
-/// Takes all directions of the level out of M.
-void Unilateral::lock_fully() {
-  const int before = open_.size();
-  open_.close(task_.topLeftCorner(rows_.rows(), before));
-  multiply(motion_.leftCols(before), open_.turn(), next_motion_.leftCols(open_.size()));
-  motion_.swap(next_motion_);
+/// True when every sigma exceeds the lock.
+bool Unilateral::all_directions_clear(const PanelMatrix& task) {
+  return task.rows() <= task.cols() && clear_.factorise(solver_.gram(), -options_.lock * options_.lock);
 }
 
 /// Takes each direction out of M as far as its sigma says.
-void Unilateral::lock_gradually(const Stack& stack) {
-  const int m = rows_.rows();
-  auto turned = turned_task_.topLeftCorner(m, open_.size());
-  auto share = share_.head(m);
-  const SymmetricEigen::Solver& eigen = eigen_.compute(task_gram_.topLeftCorner(m, m));
-  multiply(eigen.eigenvectors().transpose(), task_.topLeftCorner(m, open_.size()), turned);  // rows sigma v^T
-  for (Eigen::Index i = 0; i < m; ++i) {
-    // s(x) / sigma^2 with x = sigma / lock, written so that it stays finite at sigma = 0
-    const double x = std::sqrt(std::max(0.0, eigen.eigenvalues()[i])) / options_.lock;
-    const double quotient = x < 1.0 ? x * (10.0 + x * (6.0 * x - 15.0)) : 1.0 / (x * x);
-    share[i] = quotient / (options_.lock * options_.lock);
+void Unilateral::lock_gradually(const PanelMatrix& task) {
+  spectrum_.compute(task, solver_.gram());
+  for (int i = 0; i < spectrum_.size(); ++i) {
+    shares_[i] = quintic_step(std::sqrt(spectrum_.squared(i)) / options_.lock);
   }
-  open_.fade(turned, share);
-  multiply(stack.motion, open_.columns(), motion_.leftCols(open_.size()));
+  open_.close(spectrum_, shares_);
 }
 
 }  // namespace tope

@@ -114,7 +114,7 @@ JointLimits::Envelope JointLimits::envelope(int joint, double distance, double r
   const double approach = gain_ * distance + receding;
   const double line = std::max(approach, -0.5 * v_max);
   const double difference = line - v_max;
-  const double root = std::hypot(difference, rounding);
+  const double root = std::sqrt(difference * difference + rounding * rounding);
   const double slope = approach > -0.5 * v_max ? gain_ : 0.0;
   return {.speed = 0.5 * (line + v_max - root), .slope = 0.5 * slope * (1.0 - difference / root)};
 }

@@ -1,3 +1,4 @@
+#include <tope/law/smooth_step.hpp>
 #include <tope/limit/ramp.hpp>
 
 #include <cmath>
@@ -13,7 +14,7 @@ double ramp(Ramp shape, double x) {
     return 1.0;
   }
   if (shape == Ramp::quintic) {
-    return x * x * x * (10.0 + x * (6.0 * x - 15.0));
+    return quintic_step(x);
   }
   return 0.5 - 0.5 * std::cos(std::numbers::pi * x);
 }

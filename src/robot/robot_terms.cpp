@@ -29,7 +29,7 @@ struct RobotTerms::Scratch {
     }
     const pinocchio::Frame& chosen = frame(index);
     world_T_frame = data.oMi[chosen.parentJoint] * chosen.placement;
-    jacobian.setZero();
+    jacobian.setZero();  // joints that do not move the frame are left out
     pinocchio::getFrameJacobian(model(), data, static_cast<pinocchio::FrameIndex>(index),
                                 pinocchio::LOCAL_WORLD_ALIGNED, jacobian);
     selected = index;
@@ -103,8 +103,12 @@ Vector3 RobotTerms::frame_position(int frame) const {
 }
 
 void RobotTerms::frame_jacobian(int frame, Eigen::Ref<Matrix> jacobian) const {
+  jacobian = frame_jacobian(frame);
+}
+
+const Eigen::Matrix<double, 6, Eigen::Dynamic>& RobotTerms::frame_jacobian(int frame) const {
   scratch_->select(frame);
-  jacobian = scratch_->jacobian;
+  return scratch_->jacobian;
 }
 
 }  // namespace tope

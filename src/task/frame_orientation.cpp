@@ -16,8 +16,7 @@ FrameOrientation::FrameOrientation(const Robot& robot, const std::string& frame,
                                    Target<RotationTarget> target, Reference reference)
     : Task(3, robot.nv(), std::move(reference)),
       frame_(robot.frame_index(frame)),
-      target_(std::move(target)),
-      frame_jacobian_(6, robot.nv()) {
+      target_(std::move(target)) {
   require_rotation("FrameOrientation: target", target_.at(0.0).rotation);
 }
 
@@ -33,16 +32,17 @@ std::unique_ptr<Task> FrameOrientation::aimed_at(const Target<PointTarget>& /*po
 }
 
 void FrameOrientation::evaluate(const RobotTerms& terms, double t) {
-  terms.frame_jacobian(frame_, frame_jacobian_);
-  near_flip_ = fill_orientation_rows(terms.frame_rotation(frame_), frame_jacobian_.bottomRows<3>(),
-                                     target_.at(t), error_, jacobian_, feedforward_);
+  near_flip_ =
+      fill_orientation_rows(terms.frame_rotation(frame_), terms.frame_jacobian(frame_).bottomRows<3>(),
+                            target_.at(t), error_, jacobian_, feedforward_);
 }
 
 void FrameOrientation::evaluate_drift(const RobotTerms& terms, double t) {
-  drift_ = orientation_drift({.rotation = terms.frame_rotation(frame_),
-                              .angular_velocity = frame_jacobian_.bottomRows<3>() * terms.velocity(),
-                              .angular_acceleration = terms.frame_drift(frame_).tail<3>()},
-                             target_.at(t), error_, error_rate_);
+  drift_ =
+      orientation_drift({.rotation = terms.frame_rotation(frame_),
+                         .angular_velocity = terms.frame_jacobian(frame_).bottomRows<3>() * terms.velocity(),
+                         .angular_acceleration = terms.frame_drift(frame_).tail<3>()},
+                        target_.at(t), error_, error_rate_);
 }
 
 }  // namespace tope

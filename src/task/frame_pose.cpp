@@ -17,8 +17,7 @@ FramePose::FramePose(const Robot& robot, const std::string& frame, Target<PointT
     : Task(6, robot.nv(), std::move(reference)),
       frame_(robot.frame_index(frame)),
       position_(std::move(position)),
-      rotation_(std::move(rotation)),
-      frame_jacobian_(6, robot.nv()) {
+      rotation_(std::move(rotation)) {
   require_finite("FramePose: position", position_.at(0.0).position);
   require_rotation("FramePose: rotation", rotation_.at(0.0).rotation);
 }
@@ -38,13 +37,12 @@ std::unique_ptr<Task> FramePose::aimed_at(const Target<PointTarget>& point,
 
 void FramePose::evaluate(const RobotTerms& terms, double t) {
   const PointTarget point = position_.at(t);
-  terms.frame_jacobian(frame_, frame_jacobian_);
   error_.head<3>() = terms.frame_position(frame_) - point.position;
-  jacobian_.topRows<3>() = frame_jacobian_.topRows<3>();
+  jacobian_.topRows<3>() = terms.frame_jacobian(frame_).topRows<3>();
   feedforward_.head<3>() = point.velocity;
-  near_flip_ =
-      fill_orientation_rows(terms.frame_rotation(frame_), frame_jacobian_.bottomRows<3>(), rotation_.at(t),
-                            error_.tail<3>(), jacobian_.bottomRows<3>(), feedforward_.tail<3>());
+  near_flip_ = fill_orientation_rows(terms.frame_rotation(frame_),
+                                     terms.frame_jacobian(frame_).bottomRows<3>(), rotation_.at(t),
+                                     error_.tail<3>(), jacobian_.bottomRows<3>(), feedforward_.tail<3>());
 }
 
 void FramePose::evaluate_drift(const RobotTerms& terms, double t) {
@@ -52,7 +50,7 @@ void FramePose::evaluate_drift(const RobotTerms& terms, double t) {
   drift_.head<3>() = frame_drift.head<3>() - position_.at(t).acceleration;
   drift_.tail<3>() =
       orientation_drift({.rotation = terms.frame_rotation(frame_),
-                         .angular_velocity = frame_jacobian_.bottomRows<3>() * terms.velocity(),
+                         .angular_velocity = terms.frame_jacobian(frame_).bottomRows<3>() * terms.velocity(),
                          .angular_acceleration = frame_drift.tail<3>()},
                         rotation_.at(t), error_.tail<3>(), error_rate_.tail<3>());
 }

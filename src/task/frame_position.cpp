@@ -15,8 +15,7 @@ FramePosition::FramePosition(const Robot& robot, const std::string& frame, Targe
                              Reference reference)
     : Task(3, robot.nv(), std::move(reference)),
       frame_(robot.frame_index(frame)),
-      target_(std::move(target)),
-      frame_jacobian_(6, robot.nv()) {
+      target_(std::move(target)) {
   require_finite("FramePosition: target", target_.at(0.0).position);
 }
 
@@ -33,9 +32,8 @@ std::unique_ptr<Task> FramePosition::aimed_at(const Target<PointTarget>& point,
 
 void FramePosition::evaluate(const RobotTerms& terms, double t) {
   const PointTarget target = target_.at(t);
-  terms.frame_jacobian(frame_, frame_jacobian_);
   error_ = terms.frame_position(frame_) - target.position;
-  jacobian_ = frame_jacobian_.topRows<3>();
+  jacobian_ = terms.frame_jacobian(frame_).topRows<3>();
   feedforward_ = target.velocity;
 }
 

@@ -71,6 +71,17 @@ Problem random_problem(Random& random, Kind kind) {
   return problem;
 }
 
+/// r as the solver takes it: whole panels, zero beyond.
+Vector padded(const Vector& r) {
+  Vector result = Vector::Zero(PanelMatrix::padded(r.size()));
+  result.head(r.size()) = r;
+  return result;
+}
+
+bool solve(BoundedLeastSquares& solver, const Problem& p) {
+  return solver.solve(PanelMatrix(p.a), padded(p.r), p.mu, PanelMatrix(p.d), p.lower, p.upper);
+}
+
 struct Worst {
   double feasibility = 0.0;
   double stationarity = 0.0;
@@ -100,7 +111,7 @@ Worst check_random_problems(Kind kind, int seeds) {
       Random random(seed);
       const Problem p = random_problem(random, kind);
       BoundedLeastSquares solver(static_cast<int>(p.d.cols()), static_cast<int>(p.d.rows()));
-      BOOST_TEST(solver.solve(p.a, p.r, p.mu, p.d, p.lower, p.upper));
+      BOOST_TEST(solve(solver, p));
       const Vector& z = solver.z();
       const KktResidual kkt = kkt_residual(p.a, p.r, p.mu, p.d, p.lower, p.upper, z, 1e-8);
       const double scale = 1.0 + p.r.norm() * p.a.norm();
@@ -140,10 +151,10 @@ BOOST_AUTO_TEST_CASE(is_ordinary_least_squares_without_active_bounds) {
   BoundedLeastSquares solver(6, 6);
   const Matrix hessian = a.transpose() * a + 0.01 * Matrix::Identity(6, 6);
   const Vector expected = hessian.ldlt().solve(a.transpose() * r);
-  BOOST_TEST(solver.solve(a, r, 0.01, Matrix::Identity(6, 6), -wide, wide));
+  BOOST_TEST((solve(solver, {a, r, 0.01, Matrix::Identity(6, 6), -wide, wide})));
   BOOST_TEST((solver.z() - expected).norm() <= 1e-11);
   BOOST_TEST(solver.multipliers().norm() == 0.0);
-  BOOST_TEST(solver.solve(a, r, 0.01, Matrix::Identity(6, 6), -none, none));
+  BOOST_TEST((solve(solver, {a, r, 0.01, Matrix::Identity(6, 6), -none, none})));
   BOOST_TEST((solver.z() - expected).norm() <= 1e-11);
 }
 
@@ -153,7 +164,7 @@ BOOST_AUTO_TEST_CASE(clamps_each_unknown_of_a_separable_problem) {
   const Vector lower = Vector::Constant(10, -0.5);
   const Vector upper = Vector::Constant(10, 0.7);
   BoundedLeastSquares solver(10, 10);
-  BOOST_TEST(solver.solve(Matrix::Identity(10, 10), r, 1.0, Matrix::Identity(10, 10), lower, upper));
+  BOOST_TEST((solve(solver, {Matrix::Identity(10, 10), r, 1.0, Matrix::Identity(10, 10), lower, upper})));
   BOOST_TEST((solver.z() - (0.5 * r).cwiseMax(lower).cwiseMin(upper)).norm() <= 1e-12);
 }
 
@@ -163,7 +174,7 @@ BOOST_AUTO_TEST_CASE(says_so_when_no_point_is_inside) {
   const Vector lower = (Vector(2) << -2.0, 1.0).finished();
   const Vector upper = (Vector(2) << -1.0, 2.0).finished();
   BoundedLeastSquares solver(2, 2);
-  BOOST_TEST(!solver.solve(Matrix::Identity(2, 2), Vector::Ones(2), 1.0, d, lower, upper));
+  BOOST_TEST((!solve(solver, {Matrix::Identity(2, 2), Vector::Ones(2), 1.0, d, lower, upper})));
   BOOST_TEST(solver.z().allFinite());
 }
 
@@ -171,10 +182,10 @@ BOOST_AUTO_TEST_CASE(solves_the_next_problem_afresh) {
   Random random(5);
   const Problem first = random_problem(random, Kind::plain);
   BoundedLeastSquares used(static_cast<int>(first.d.cols()), static_cast<int>(first.d.rows()));
-  used.solve(first.a, first.r, first.mu, first.d, first.lower, first.upper);
+  solve(used, first);
   const Vector z = used.z();
-  used.solve(first.a, 3.0 * first.r, first.mu, first.d, 0.5 * first.lower, first.upper);
-  used.solve(first.a, first.r, first.mu, first.d, first.lower, first.upper);
+  solve(used, {first.a, 3.0 * first.r, first.mu, first.d, 0.5 * first.lower, first.upper});
+  solve(used, first);
   BOOST_TEST((used.z() - z).norm() == 0.0);
 }
 

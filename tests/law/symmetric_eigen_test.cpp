@@ -10,7 +10,7 @@ namespace tope::test {
 namespace {
 
 void check(SymmetricEigen& eigen, const Matrix& matrix) {
-  const SymmetricEigen::Solver& result = eigen.compute(matrix);
+  const SymmetricEigen::Solver& result = eigen.compute(PanelMatrix(matrix));
   const Matrix& vectors = result.eigenvectors();
   const Vector& values = result.eigenvalues();
   const double scale = 1e-13 * (1.0 + matrix.norm());

@@ -1,5 +1,5 @@
-// Whitening of the velocity mode: (10), the weighted pseudo-inverse, becomes the ordinary one. Not here:
-// torque mode.
+// Whitening: (10), the weighted pseudo-inverse, becomes the ordinary one, in velocity mode and, with the mass matrix for
+// its weight, in torque mode.
 #include "support/random.hpp"
 #include "support/text.hpp"
 
@@ -24,11 +24,30 @@ BOOST_AUTO_TEST_CASE(gives_the_weighted_pseudo_inverse) {
       const Whitening whitening = Whitening::velocity(weight);
       Matrix a;
       whitening.rows(jacobian, a);
-      const Vector u = whitening.command() * a.completeOrthogonalDecomposition().solve(rate);
+      const Vector u = whitening.motion() * a.completeOrthogonalDecomposition().solve(rate);
       const Matrix weighted = weight * jacobian.transpose();
       const Vector expected = weighted * (jacobian * weighted).inverse() * rate;  // J^+ = W J^T (J W J^T)^-1
       BOOST_TEST((u - expected).norm() <= 1e-10 * (1.0 + expected.norm()));
       BOOST_TEST((whitening.motion() * whitening.motion().transpose() - weight).norm() <= 1e-12);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(weighs_accelerations_by_the_mass_matrix) {
+  for (int seed = 0; seed < 20; ++seed) {
+    BOOST_TEST_CONTEXT("seed " << seed) {
+      Random random(seed);
+      const int n = random.integer(2, 40);
+      const Matrix mass = random.positive_definite(n, 0.05, 4.0);
+      const Matrix jacobian = random.matrix(random.chance(0.5) ? 3 : std::max(1, n / 2), n);
+      Whitening whitening = Whitening::torque(n);
+      whitening.set_mass_matrix(mass);
+      const Matrix& t = whitening.motion();
+      BOOST_TEST((t * t.transpose() * mass - Matrix::Identity(n, n)).norm() <= 1e-10);
+      BOOST_TEST(t.triangularView<Eigen::StrictlyLower>().toDenseMatrix().norm() == 0.0);
+      Matrix a;
+      whitening.rows(jacobian, a);
+      BOOST_TEST((a - jacobian * t).norm() <= 1e-12 * (1.0 + a.norm()));
     }
   }
 }

@@ -62,6 +62,17 @@ BOOST_AUTO_TEST_CASE(length_stays_within_pi) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(says_vector_angle_and_jacobian_at_once) {
+  Random random(9);
+  for (const double angle : {0.0, 1e-9, 1e-3, 0.0099, 0.0101, 0.5, 2.0, 3.1, kPi}) {
+    const Vector3 axis = random.vector(3).normalized();
+    const RotationError e = tope::rotation_error(turn(angle, axis));
+    BOOST_TEST(std::abs(e.angle - angle) <= 1e-12);
+    BOOST_TEST((e.vector - rotation_vector(turn(angle, axis))).norm() == 0.0);
+    BOOST_TEST((e.inverse_right_jacobian - inverse_right_jacobian(e.vector)).norm() <= 1e-11);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(inverse_right_jacobian_is_the_derivative_of_the_logarithm) {
   BOOST_TEST((inverse_right_jacobian(Vector3::Zero()) - Matrix3::Identity()).norm() == 0.0);
   const double h = 1e-5;

@@ -92,6 +92,7 @@ class Controller {
   void observe_tasks();
   void fill_field();
   void leave_bias_to_tasks();
+  void to_motion(const Vector& y, Vector& motion) const;
   CommandBounds bound_velocity();
   CommandBounds bound_torque();
   void report(const CommandBounds& bounds);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tope/law/cholesky.hpp>
 #include <tope/law/dual_active_set.hpp>
 
 #include <vector>
@@ -21,47 +22,52 @@ class BoundedLeastSquares {
   /// For up to n unknowns and exactly `constraints` rows.
   BoundedLeastSquares(int n, int constraints);
 
-  /// A (m x d), r (m), D (p x d), lower and upper (p), d <= n. `active` (p): in, a guess; out, the active rows. Returns
-  /// false when it was cut off: z is then scaled towards zero until it keeps the bounds, if z = 0 keeps them.
-  bool solve(const Eigen::Ref<const Matrix>& a, const VectorArg& r, double mu,
-             const Eigen::Ref<const Matrix>& d, const Vector& lower, const Vector& upper, ActiveRows& active);
+  /// A (m x d), r (padded(m), zero beyond), D (p x d), lower and upper (p), d <= n. `active` (p): in, a guess; out, the
+  /// active rows. Returns false when it was cut off: z is then scaled towards zero until it keeps the bounds, if z = 0
+  /// keeps them.
+  bool solve(const PanelMatrix& a, const Vector& r, double mu, const PanelMatrix& d, const Vector& lower,
+             const Vector& upper, ActiveRows& active);
   /// The same without a guess.
-  bool solve(const Eigen::Ref<const Matrix>& a, const VectorArg& r, double mu,
-             const Eigen::Ref<const Matrix>& d, const Vector& lower, const Vector& upper);
+  bool solve(const PanelMatrix& a, const Vector& r, double mu, const PanelMatrix& d, const Vector& lower,
+             const Vector& upper);
 
-  auto z() const { return z_.head(unknowns_); }            ///< (d)
-  const Vector& row_values() const { return row_value_; }  ///< D z (p)
+  auto z() const { return z_.head(unknowns_); }                             ///< (d)
+  auto row_values() const { return row_value_.head(multipliers_.size()); }  ///< D z (p)
+  /// A A^T if m < d, A^T A otherwise: lower triangle.
+  const PanelMatrix& gram() const { return gram_; }
   /// Lagrange multiplier of each row (p) in the half-squared problem: positive presses on the upper bound,
   /// negative on the lower one, zero elsewhere.
   const Vector& multipliers() const { return multipliers_; }
 
  private:
-  void factorise(const Eigen::Ref<const Matrix>& a, double mu);
-  template <typename Out>
-  void apply_inverse(const Eigen::Ref<const Matrix>& a, double mu, Out&& z);
-  bool hold(const Eigen::Ref<const Matrix>& a, double mu, const Eigen::Ref<const Matrix>& d,
-            const Vector& lower, const Vector& upper);
+  void minimise_freely(const PanelMatrix& a, const Vector& r, double mu);
+  void apply_inverse(const PanelMatrix& a, double mu, double* z);
+  bool hold(const PanelMatrix& a, double mu, const PanelMatrix& d, const Vector& lower, const Vector& upper);
   bool settle(const Vector& lower, const Vector& upper, ActiveRows& active);
   void gather(const ActiveRows& active);
-  bool fall_back(const Eigen::Ref<const Matrix>& a, const VectorArg& r, double mu,
-                 const Eigen::Ref<const Matrix>& d, const Vector& lower, const Vector& upper,
-                 ActiveRows& active);
+  bool fall_back(const PanelMatrix& a, const Vector& r, double mu, const PanelMatrix& d, const Vector& lower,
+                 const Vector& upper, ActiveRows& active);
 
   int unknowns_ = 0;      // d
-  bool by_rows_ = false;  // factor_ is of A A^T + mu I (m x m), not of A^T A + mu I (d x d)
-  Matrix factor_;         // lower Cholesky factor (n x n)
-  Vector free_z_;         // minimum without bounds (n)
-  Vector z_;              // (n)
-  Vector in_rows_;        // A z (n)
-  Matrix response_;       // column i: H^-1 d_i^T of held row i (n x n)
-  Matrix schur_;          // D_held H^-1 D_held^T, then its factor (n x n)
+  bool by_rows_ = false;  // gram_ is A A^T (m x m), not A^T A (d x d)
+  PanelMatrix gram_;
+  Cholesky factor_;  // of gram_ + mu I
+  Vector free_z_;    // minimum without bounds (n), padded as all that panels are multiplied with
+  Vector z_;
+  Vector in_rows_;     // A z (n)
+  Vector in_z_;        // A^T w (n)
+  Matrix normals_;     // column i: d_i^T of held row i (n x n)
+  Matrix response_;    // column i: H^-1 d_i^T (n x n)
+  PanelMatrix schur_;  // D_held H^-1 D_held^T
+  Cholesky schur_factor_;
   Vector held_multiplier_;
   std::vector<Eigen::Index> held_;  // rows held as equalities
   std::vector<signed char> held_sign_;
   Vector multipliers_;
   Vector row_value_;  // D z
   DualActiveSet dual_;
-  Matrix padded_d_;  // D with zero columns, for the dual method (p x n)
+  PanelMatrix hessian_;  // A^T A, for the dual method
+  Matrix padded_d_;      // D with zero columns (p x n)
   ActiveRows no_guess_;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tope/common/types.hpp>
+#include <tope/law/panel_matrix.hpp>
 
 #include <vector>
 
@@ -16,10 +16,10 @@ class DualActiveSet {
  public:
   DualActiveSet(int n, int constraints);
 
-  /// A (m x d), r (m), D (p x n), lower and upper (p); unknowns beyond d <= n are in no row of A. Returns false when it
-  /// was cut off.
-  bool solve(const Eigen::Ref<const Matrix>& a, const VectorArg& r, double mu, const Matrix& d,
-             const Vector& lower, const Vector& upper);
+  /// A^T A (d x d, lower triangle), A^T r (d or more), D (p x n), lower and upper (p); unknowns beyond d <= n are in no
+  /// row of A. Returns false when it was cut off.
+  bool solve(const PanelMatrix& gram, const Vector& gradient, double mu, const Matrix& d, const Vector& lower,
+             const Vector& upper);
 
   const Vector& z() const { return z_; }
   /// Lagrange multiplier of each row (p) in the half-squared problem: positive presses on the upper bound,
@@ -33,7 +33,7 @@ class DualActiveSet {
     double value = 0.0;  // how far beyond the bound
   };
 
-  void start(const Eigen::Ref<const Matrix>& a, const VectorArg& r, double mu);
+  void start(const PanelMatrix& gram, const Vector& gradient, double mu);
   Violation worst_violation(const Vector& lower, const Vector& upper) const;
   bool satisfy(const Violation& violation, const Matrix& d, const Vector& lower, const Vector& upper);
   void activate(const Violation& violation, double multiplier);

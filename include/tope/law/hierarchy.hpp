@@ -1,9 +1,9 @@
 #pragma once
 
+#include <tope/law/cholesky.hpp>
 #include <tope/law/level_rows.hpp>
 #include <tope/law/open_basis.hpp>
 #include <tope/law/stack_law.hpp>
-#include <tope/law/symmetric_eigen.hpp>
 
 #include <vector>
 
@@ -18,7 +18,8 @@ namespace tope {
 /// rho in [0, 1) says how much of a task direction is left, whether the arm or a higher level took it. Where
 /// every rho >= rho_0 this is the undamped law; where rows conflict or are deficient it is least squares in
 /// the metric B^-1. N is kept as Z Z^T: a level has as many unknowns as directions are open, and its spectrum is taken
-/// from the smaller of G and Z^T A^T L^-T L^-1 A Z. What does not depend on the selection is worked out once a cycle.
+/// from the smaller of G and Z^T A^T L^-T L^-1 A Z. What does not depend on the selection is worked out once a cycle, and
+/// where a selection only adds limit rows to the one before, those rows alone are added.
 class Hierarchy final : public StackLaw {
  public:
   struct Options {
@@ -36,38 +37,54 @@ class Hierarchy final : public StackLaw {
   void solve(const Stack& stack, const Selection& selection, const Vector& limit_target, Solution& solution);
 
  private:
-  /// One level's rows in the metric B^-1.
+  /// What a level has in common whatever limit rows are above it.
   struct Level {
-    std::size_t first;  // task
-    std::size_t last;   // one past its last task
-    Matrix rows;        // P = L^-1 A (m x n)
-    Vector target;      // L^-1 b (m)
-    bool ready;
+    Level(const Stack& stack, int max_rows);
+
+    std::size_t first = 0;  // task
+    std::size_t last = 0;   // one past its last task
+    LevelRows given;        // A and b
+    PanelMatrix metric;     // B (m x m)
+    Cholesky factor;        // B = L L^T, once it is needed
+    bool ready = false;
+    bool factorised = false;
   };
 
-  void add_limits(const Stack& stack, const Selection& selection, const Vector& limit_target, Vector& y);
-  void whiten(const Stack& stack, const Selection& selection, std::size_t first, Matrix& rows,
-              Vector& target);
-  void add_level(const Eigen::Ref<const Matrix>& rows, const VectorArg& target, bool last,
-                 Solution& solution);
-  void add_wide_level(int m, bool last, Solution& solution);
-  void add_tall_level(int m, bool last, Solution& solution);
-  double damped(double rho) const;
+  void hold_limits(const Stack& stack, const Selection& selection, const Vector& limit_target);
+  void hold_limit(const Stack& stack, Eigen::Index joint, double target);
+  void release_limits();
+  void prepare(const Stack& stack, const Selection& selection, Level& level);
+  const PanelMatrix& rows(const Level& level) const;
+  void add_level(const Stack& stack, Level& level, bool last, Solution& solution);
+  bool add_undamped(const PanelMatrix& task, const Level& level, bool last);
+  void whiten(bool plain, Level& level);
+  bool add_whitened(bool last);
+  void minimise();
+  void minimise_damped();
 
   Options options_;
-  LevelRows gathered_;
   std::vector<Level> levels_;
   Level partial_;  // a level of which some tasks are not selected
-  SymmetricEigen eigen_;
-  OpenBasis open_;   // Z (n x d)
-  Matrix task_;      // P Z (m x d)
-  Matrix gram_;      // B, then G or its small twin
-  Matrix factor_;    // G - rho_0 I, then G's factor
-  Matrix turned_;    // rows of P Z along its singular vectors
+  RowSpectrum spectrum_;
+
+  std::vector<char> held_;  // joints whose limit row is in:
+  Vector held_target_;
+  OpenBasis held_open_;  // Z
+  Vector held_y_;        // and y, of these rows alone
+
+  OpenBasis open_;      // Z (n x d)
+  PanelMatrix motion_;  // T, for a task that asks for it
+  PanelMatrix limit_row_;
+  PanelMatrix task_;    // A Z, or L^-1 A Z (m x d)
+  PanelMatrix gram_;    // A Z Z^T A^T, or G or its small twin
+  PanelMatrix excess_;  // A Z Z^T A^T - rho_0 B
+  Cholesky factor_;
+  Cholesky clear_;   // of what is positive definite when every rho > rho_0
+  Vector y_;         // (n), padded like all that panels are multiplied with
   Vector residual_;  // r (m)
   Vector weights_;   // (m or d)
   Vector step_;      // (d)
-  Vector share_;
+  Vector shares_;
 };
 
 }  // namespace tope

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tope/law/panel_matrix.hpp>
 #include <tope/law/stack.hpp>
 
 namespace tope {
@@ -13,14 +14,16 @@ class LevelRows {
   /// task.
   std::size_t gather(const Stack& stack, const Selection& selection, std::size_t first);
 
-  int rows() const { return rows_; }
-  auto a() const { return a_.topRows(rows_); }  ///< (rows x n)
-  auto b() const { return b_.head(rows_); }     ///< (rows)
+  int rows() const { return static_cast<int>(a_.rows()); }
+  const PanelMatrix& a() const { return a_; }  ///< (rows x n)
+  const Vector& b() const { return b_; }       ///< (rows, padded)
+  /// True when the rows are one task that asks for the motion itself: A = T. Then a() is not filled.
+  bool is_motion() const { return is_motion_; }
 
  private:
-  Matrix a_;
+  PanelMatrix a_;
   Vector b_;
-  int rows_ = 0;
+  bool is_motion_ = false;
 };
 
 }  // namespace tope

@@ -1,46 +1,50 @@
 #pragma once
 
-#include <tope/common/types.hpp>
+#include <tope/law/row_spectrum.hpp>
 
 namespace tope {
 
 /// The directions that higher levels leave open: y may still move by Z w. Levels take directions out one after the
-/// other, so that each works on fewer unknowns than the one above it.
+/// other, so that each works on fewer unknowns than the one above it. The image T Z of the directions may come along.
 class OpenBasis {
  public:
-  /// For n unknowns, and levels of up to `max_rows` rows.
-  OpenBasis(int n, int max_rows);
+  /// For n unknowns.
+  explicit OpenBasis(int n);
 
-  /// All directions are open: Z is the identity.
+  /// All directions are open: Z is the identity, and its image is not used.
   void reset();
-  /// No direction is.
-  void close_all() { size_ = 0; }
+  /// The same directions as another basis that has no image.
+  void reset(const OpenBasis& other);
+  /// All directions, with the image T Z, for T (n x n).
+  void reset(const Matrix& t);
 
-  int size() const { return size_; }                      ///< d, columns of Z
-  auto columns() const { return open_.leftCols(size_); }  ///< Z (n x d)
-  /// out = A Z (m x d).
-  void project(const Eigen::Ref<const Matrix>& a, Eigen::Ref<Matrix> out) const;
+  int size() const { return static_cast<int>(open_.cols()); }                ///< d, columns of Z
+  const PanelMatrix& columns() const { return open_; }                       ///< Z (n x d)
+  const PanelMatrix& image() const { return with_image_ ? image_ : open_; }  ///< T Z (n x d)
+  /// A Z (m x d): in `workspace`, or A itself while all directions are open.
+  const PanelMatrix& project(const PanelMatrix& a, PanelMatrix& workspace) const;
 
-  /// Takes out all directions of the rows B (m x d), of full rank m <= d: Z <- Z Q_2.
-  void close(const Eigen::Ref<const Matrix>& b);
-  /// The last close()'s Q_2 (d before x d after), for what else lives in these coordinates.
-  auto turn() const { return turn_.topLeftCorner(turned_from_, size_); }
-  /// Takes each of the orthogonal rows sigma_i v_i^T (m x d) out by a share: Z <- Z (I - sum f_i sigma_i^2 v_i v_i^T).
-  void fade(const Eigen::Ref<const Matrix>& rows, const VectorArg& factors);
+  /// Takes out all directions of the rows B (m x d), of full rank m <= d.
+  void close(const PanelMatrix& b);
+  /// Takes each direction of the spectrum out by a share between 0 and 1: Z <- Z (I - sum share_i v_i v_i^T).
+  void close(const RowSpectrum& spectrum, const Vector& shares);
+  /// True when Z^T Z = I: no direction has been taken out by a share.
+  bool orthonormal() const { return orthonormal_; }
+  /// No direction is open.
+  void close_all() { drop(size()); }
 
  private:
-  void reflect(const Eigen::Ref<const Matrix>& b);
-  void form_turn(int rank);
+  void turn_all(Eigen::Index first, const double* v, double factor);
+  void close_rows();
+  void drop(Eigen::Index count);
 
-  int size_;
-  int turned_from_;
+  PanelMatrix open_;
+  PanelMatrix image_;
+  bool with_image_ = false;
   bool whole_ = true;  // Z is the identity
-  Matrix open_;
-  Matrix next_open_;
-  Matrix reflectors_;  // Householder vectors in columns (d x m)
-  Vector scale_;
-  Matrix turn_;
-  Matrix faded_;  // Z B^T, column-weighted (n x m)
+  bool orthonormal_ = true;
+  PanelMatrix rows_;  // what is to be taken out whole (m x d)
+  Vector reflector_;
 };
 
 }  // namespace tope

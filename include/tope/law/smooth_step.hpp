@@ -10,4 +10,12 @@ inline double smooth_step(double x) {
   return x >= 1.0 ? 1.0 : x * x * (3.0 - 2.0 * x);
 }
 
+/// 10 x^3 - 15 x^4 + 6 x^5 on [0, 1], constant outside.
+inline double quintic_step(double x) {
+  if (x <= 0.0) {
+    return 0.0;
+  }
+  return x >= 1.0 ? 1.0 : x * x * x * (10.0 + x * (6.0 * x - 15.0));
+}
+
 }  // namespace tope

@@ -12,6 +12,7 @@ struct TaskRows {
   double activation = 1.0;  ///< 0 absent, 1 complete, between while the task is inserted or removed
   Matrix a;                 ///< A = Q L (m x n)
   Vector b;                 ///< (m)
+  bool is_motion = false;   ///< A is the stack's motion T, whatever `a` holds: rows on the joints themselves
 };
 
 /// Everything a law sees at one instant: n unknowns y, limits on the motion T y (joint velocities or
@@ -21,10 +22,11 @@ struct Stack {
 
   int size() const { return static_cast<int>(motion.rows()); }
 
-  Matrix motion;            ///< T (n x n): y to the bounded motion, one row a joint
-  Vector limit_activation;  ///< xi (n), of the limit row of each joint
-  Vector limit_target;      ///< motion asked for by the limit row where it is active (n)
-  Vector motion_lower;      ///< bounds of the motion (n), for the unilateral law
+  Matrix motion;             ///< T (n x n): y to the bounded motion, one row a joint
+  bool motion_is_y = false;  ///< T is the identity
+  Vector limit_activation;   ///< xi (n), of the limit row of each joint
+  Vector limit_target;       ///< motion asked for by the limit row where it is active (n)
+  Vector motion_lower;       ///< bounds of the motion (n), for the unilateral law
   Vector motion_upper;
   std::vector<TaskRows> tasks;  ///< sorted by level
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tope/common/types.hpp>
+#include <tope/law/panel_matrix.hpp>
 
 #include <Eigen/Eigenvalues>
 
@@ -8,7 +8,8 @@
 
 namespace tope {
 
-/// Eigen-decompositions of symmetric matrices of any size up to a bound, each with its memory reserved.
+/// Eigen-decompositions of symmetric matrices of any size up to a bound, each with its memory reserved: by Jacobi's
+/// rotations up to four rows, the usual size of a task, and by Eigen's tridiagonal solver above.
 /// (Eigen's own compute() takes its workspace from the heap.)
 class SymmetricEigen {
  public:
@@ -17,12 +18,16 @@ class SymmetricEigen {
    public:
     explicit Solver(Eigen::Index size);
 
-    void compute(const Eigen::Ref<const Matrix>& matrix);
+    void compute(const PanelMatrix& matrix);
 
     const Vector& eigenvalues() const { return values_; }
     const Matrix& eigenvectors() const { return vectors_; }  ///< one a column
 
    private:
+    template <int size>
+    void rotate();
+    void reduce();
+
     Matrix reduced_;  // M, then its tridiagonal form T: M = Q T Q^T
     Matrix basis_;    // Q
     Vector reflector_;
@@ -36,8 +41,9 @@ class SymmetricEigen {
 
   explicit SymmetricEigen(int max_size);
 
-  /// Decomposes the m x m matrix; the result stays valid until the next call with the same size.
-  const Solver& compute(const Eigen::Ref<const Matrix>& matrix);
+  /// Decomposes the m x m matrix, of which the lower triangle is read; the result stays valid until the next call with
+  /// the same size.
+  const Solver& compute(const PanelMatrix& matrix);
 
  private:
   std::vector<Solver> solvers_;  // solvers_[m - 1] is for size m

@@ -4,7 +4,6 @@
 #include <tope/law/level_rows.hpp>
 #include <tope/law/open_basis.hpp>
 #include <tope/law/stack_law.hpp>
-#include <tope/law/symmetric_eigen.hpp>
 
 namespace tope {
 
@@ -42,33 +41,29 @@ class Unilateral final : public StackLaw {
   void solve(const Stack& stack, const Selection& selection, Solution& solution) override;
 
  private:
-  void solve_limits(const Stack& stack, Solution& solution);
-  void solve_level(std::size_t position, Solution& solution);
+  void solve_limits(Solution& solution);
+  const PanelMatrix& open_task();
+  bool solve_level(const PanelMatrix& task, std::size_t position);
   double squared_damping(double squared_residual) const;
   void set_bounds(const Stack& stack, int level);
-  bool all_directions_clear();
-  void lock_fully();
-  void lock_gradually(const Stack& stack);
+  bool all_directions_clear(const PanelMatrix& task);
+  void lock_gradually(const PanelMatrix& task);
 
   Options options_;
   LevelRows rows_;
   BoundedLeastSquares solver_;
-  SymmetricEigen eigen_;
-  OpenBasis open_;  // M up to an orthonormal change of z (n x d)
-  Matrix motion_;   // T M (n x d)
-  Matrix next_motion_;
-  Matrix task_;         // A M (m x d)
-  Matrix task_gram_;    // A M M^T A^T (m x m)
-  Matrix factor_;       // (m x m)
-  Matrix turned_task_;  // rows of A M along its singular vectors (m x d)
-  Vector share_;        // (m)
-  Vector residual_;     // (m)
-  Vector motion_at_y_;  // T y (n)
+  Cholesky clear_;  // of A M M^T A^T - lock^2 I
+  RowSpectrum spectrum_;
+  OpenBasis open_;    // M up to an orthonormal change of z, and T M (n x d)
+  PanelMatrix task_;  // A M (m x d)
+  Vector shares_;
+  Vector residual_;  // (m), padded like all that panels are multiplied with
+  Vector y_;
+  Vector motion_;  // T y (n)
   Vector lower_;
   Vector upper_;
   std::vector<BoundedLeastSquares::ActiveRows> active_;  // of the last cycle, for each level
-  Matrix no_rows_;                                       // 0 x n: level 0 has no task
-  Vector no_residual_;
+  PanelMatrix no_rows_;                                  // 0 x n: level 0 has no task
 };
 
 }  // namespace tope

@@ -33,6 +33,8 @@ class RobotTerms {
   /// Jacobian (6 x nv) of a frame: linear velocity of its origin over angular velocity, both along the axes
   /// of the world.
   void frame_jacobian(int frame, Eigen::Ref<Matrix> jacobian) const;
+  /// The same without a copy, until the next update() or another frame is asked for.
+  const Eigen::Matrix<double, 6, Eigen::Dynamic>& frame_jacobian(int frame) const;
 
   /// What follows needs update_dynamics().
   /// H (nv x nv), symmetric, rotor inertia included [kg, kg m, kg m2].

@@ -14,6 +14,7 @@ class Damping final : public Task {
   std::string_view type() const override { return "damping"; }
   std::string_view error_unit() const override { return "mixed"; }
   bool is_goal() const override { return false; }
+  bool is_motion() const override { return true; }
   std::unique_ptr<Task> clone() const override { return std::make_unique<Damping>(*this); }
 
  private:

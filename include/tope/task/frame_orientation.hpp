@@ -30,7 +30,6 @@ class FrameOrientation final : public Task {
 
   int frame_;
   Target<RotationTarget> target_;
-  Matrix frame_jacobian_;
 };
 
 }  // namespace tope

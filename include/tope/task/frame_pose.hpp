@@ -32,7 +32,6 @@ class FramePose final : public Task {
   int frame_;
   Target<PointTarget> position_;
   Target<RotationTarget> rotation_;
-  Matrix frame_jacobian_;
 };
 
 }  // namespace tope

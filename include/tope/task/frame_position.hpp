@@ -29,7 +29,6 @@ class FramePosition final : public Task {
 
   int frame_;
   Target<PointTarget> target_;
-  Matrix frame_jacobian_;
 };
 
 }  // namespace tope

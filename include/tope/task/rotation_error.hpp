@@ -4,6 +4,14 @@
 
 namespace tope {
 
+/// e = log R of a rotation R, its length, and the inverse right Jacobian J_r^-1(e): de/dt = J_r^-1 (R^T w).
+struct RotationError {
+  Vector3 vector;
+  double angle;
+  Matrix3 inverse_right_jacobian;
+};
+RotationError rotation_error(const Matrix3& rotation);
+
 /// Rotation vector of a rotation matrix [rad], its length in [0, pi]. Accurate near zero and near pi.
 Vector3 rotation_vector(const Matrix3& rotation);
 

@@ -31,6 +31,8 @@ class Task {
   virtual std::string_view error_unit() const = 0;
   /// False for tasks that only take up freedom that is left (posture, damping).
   virtual bool is_goal() const { return true; }
+  /// True when J is the identity whatever the state: the rows are the joints themselves.
+  virtual bool is_motion() const { return false; }
   /// Where the task wants its frame at time t [s]; none for a task that is not about a frame.
   virtual std::optional<FrameGoal> frame_goal(double /*t*/) const { return std::nullopt; }
 

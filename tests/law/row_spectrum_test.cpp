@@ -1,0 +1,60 @@
+// RowSpectrum against Eigen's SVD: wide, square and tall rows, regular and deficient.
+#include "support/random.hpp"
+
+#include <tope/law/row_spectrum.hpp>
+
+#include <Eigen/SVD>
+#include <boost/test/unit_test.hpp>
+
+namespace tope::test {
+namespace {
+
+void check(Random& random, const Matrix& k) {
+  const auto m = static_cast<int>(k.rows());
+  const auto d = static_cast<int>(k.cols());
+  const PanelMatrix rows(k);
+  PanelMatrix gram(std::max(m, d), std::max(m, d));
+  m < d ? multiply_rows(rows, gram) : multiply_columns(rows, gram);
+  RowSpectrum spectrum(std::min(m, d) + 2 > d ? std::min(m, d) + 2 : d);
+  spectrum.compute(rows, gram);
+  BOOST_TEST(spectrum.size() == std::min(m, d));
+
+  const Vector values = Eigen::JacobiSVD<Matrix>(k).singularValues();
+  const Vector r = random.vector(m);
+  Vector padded = Vector::Zero(PanelMatrix::padded(m));
+  padded.head(m) = r;
+  Vector components(spectrum.size());
+  spectrum.components(rows, padded, components);
+  Matrix gram_again = Matrix::Zero(d, d);
+  Vector product = Vector::Zero(d);
+  for (int i = 0; i < spectrum.size(); ++i) {
+    const Eigen::Map<const Vector> direction(spectrum.direction(i), d);
+    BOOST_TEST(std::abs(spectrum.squared(i) - std::pow(values[spectrum.size() - 1 - i], 2)) <= 1e-12);
+    BOOST_TEST(std::abs(direction.squaredNorm() - spectrum.squared(i)) <= 1e-12);
+    gram_again += direction * direction.transpose();
+    product += components[i] * direction;
+  }
+  BOOST_TEST((gram_again - k.transpose() * k).norm() <= 1e-12);
+  BOOST_TEST((product - k.transpose() * r).norm() <=
+             1e-7);  // components of vanishing directions do not count
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(row_spectrum)
+
+BOOST_AUTO_TEST_CASE(equals_the_singular_value_decomposition) {
+  for (int seed = 0; seed < 100; ++seed) {
+    BOOST_TEST_CONTEXT("seed " << seed) {
+      Random random(seed);
+      const int m = random.integer(1, 12);
+      const int d = random.integer(1, 12);
+      check(random, random.matrix_of_rank(m, d, std::min(m, d), 0.1, 1.0));
+      check(random, random.matrix_of_rank(m, d, (std::min(m, d) + 1) / 2, 0.1, 1.0));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+}  // namespace tope::test
