@@ -74,14 +74,14 @@ campaign-robustness: build
 	$(BIN)/python bench/robustness.py
 
 # The libraries that `tope bench --peers` measures tope against, each in an environment of its own: ten minutes and more,
-# as tsid is compiled. Then the README's tables of them, ten minutes too; the first target alone may name some: PEERS=placo.
+# as tsid is compiled; PEERS=placo for some. Then the tables of README.md and docs/peers.md, ten minutes too.
 .PHONY: peers bench-peers
 peers: build
 	$(BIN)/pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps \
 	  -C cmake.define.TOPE_BUILD_PEERS=ON -e .
 	$(BIN)/python bench/peers/install.py $(PEERS)
 bench-peers: build
-	$(BIN)/tope bench --peers --json runs/bench-peers.json --markdown README.md
+	$(BIN)/tope bench --peers --json runs/bench-peers.json --markdown README.md --markdown docs/peers.md
 
 # The experiments in MuJoCo, with faults: figures of the README and of docs/experiment.md. Half a minute.
 .PHONY: experiment

@@ -94,7 +94,7 @@ def read_pose(values: list[str]) -> Pose:
 
 
 class Peer(Protocol):
-    """A controller under measurement."""
+    """A controller under measurement; inherited for prepare() alone."""
 
     package: str  # on PyPI
     priorities: str  # how it ranks its tasks
@@ -102,6 +102,9 @@ class Peer(Protocol):
 
     def start(self, goal: Pose, dt: float) -> None:
         """Begin anew towards a goal."""
+
+    def prepare(self, q: np.ndarray) -> None:
+        """What its user has to compute for it: not timed."""
 
     def command(self, q: np.ndarray, v: np.ndarray) -> np.ndarray:
         """The velocities or torques of one cycle, its kinematics included: what is timed.
@@ -132,6 +135,7 @@ def run(
     cycle = 0
     peer.start(setup.goals[goal], dt)
     while cycle < cycles and failing * dt < GIVE_UP:
+        peer.prepare(q)
         begin = time.perf_counter_ns()
         try:
             u = peer.command(q, v)

@@ -13,8 +13,8 @@ from __future__ import annotations
 import logging
 
 import numpy as np
-from closed_loop import NoCommandError, Setup, main
-from kinematics import Pose, log3
+from closed_loop import NoCommandError, Peer, Setup, main
+from kinematics import Pose, forward, log3
 from pydrake.common.value import Value
 from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.multibody.inverse_kinematics import (
@@ -32,7 +32,7 @@ from pydrake.systems.framework import BusValue
 FASTEST = 100.0  # rad/s and m/s; the twist is bounded by the joints alone
 
 
-class Function:
+class Function(Peer):
     """DoDifferentialInverseKinematics."""
 
     package = "drake"
@@ -58,22 +58,25 @@ class Function:
         self.parameters.set_nominal_joint_position(setup.start)
         self.parameters.set_joint_centering_gain(0.1 * setup.posture_gain * np.eye(n))
 
+    def prepare(self, q: np.ndarray) -> None:
+        """The twist towards the goal."""
+        here = forward(self.setup.joints, self.setup.tip, q)
+        turn = here.rotation @ log3(here.rotation.T @ self.goal.rotation)
+        self.twist = self.setup.gain * np.concatenate([turn, self.goal.position - here.position])
+
     def command(self, q: np.ndarray, v: np.ndarray) -> np.ndarray:
         """One cycle."""
         self.plant.SetPositions(self.context, q)
         self.plant.SetVelocities(self.context, v)
-        here = self.frame.CalcPoseInWorld(self.context)
-        rotation = here.rotation().matrix()
-        twist = np.empty(6)
-        twist[:3] = self.setup.gain * (rotation @ log3(rotation.T @ self.goal.rotation))
-        twist[3:] = self.setup.gain * (self.goal.position - here.translation())
-        result = DoDifferentialInverseKinematics(self.plant, self.context, twist, self.frame, self.parameters)
+        result = DoDifferentialInverseKinematics(
+            self.plant, self.context, self.twist, self.frame, self.parameters
+        )
         if result.status != DifferentialInverseKinematicsStatus.kSolutionFound:
             raise NoCommandError(str(result.status))
         return np.array(result.joint_velocities)
 
 
-class System:
+class System(Peer):
     """DifferentialInverseKinematicsSystem."""
 
     package = "drake"

@@ -11,11 +11,11 @@ from __future__ import annotations
 
 import embodik
 import numpy as np
-from closed_loop import NoCommandError, Setup, main
+from closed_loop import NoCommandError, Peer, Setup, main
 from kinematics import Pose
 
 
-class Embodik:
+class Embodik(Peer):
     """embodik.KinematicsSolver."""
 
     package = "embodik"

@@ -14,8 +14,8 @@ from __future__ import annotations
 import mink
 import mujoco
 import numpy as np
-from closed_loop import NEAR, Setup, main
-from kinematics import Pose, towards
+from closed_loop import NEAR, Peer, Setup, main
+from kinematics import Pose, forward, towards
 
 POSTURE_COST = 1e-3
 PRIORITIES = {
@@ -37,7 +37,7 @@ class OrientationTask(mink.FrameTask):
         return super().compute_jacobian(configuration)[3:]
 
 
-class Mink:
+class Mink(Peer):
     """mink.solve_ik."""
 
     package = "mink"
@@ -70,14 +70,17 @@ class Mink:
         posture.set_target(self.setup.start)
         self.tasks = [task, posture]
 
-    def command(self, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """One cycle."""
-        self.configuration.update(q)
+    def prepare(self, q: np.ndarray) -> None:
+        """A target that is near enough for a constraint."""
         if self.constraints is not None:
-            here = self.configuration.get_transform_frame_to_world("ee", "body").rotation().as_matrix()
+            here = forward(self.setup.joints, self.setup.tip, q).rotation
             turned = mink.SO3.from_matrix(towards(here, self.goal.rotation, NEAR))
             target = mink.SE3.from_rotation_and_translation(turned, self.goal.position)
             self.constraints[0].set_target(target)
+
+    def command(self, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """One cycle."""
+        self.configuration.update(q)
         return mink.solve_ik(
             self.configuration,
             self.tasks,

@@ -15,8 +15,8 @@ from __future__ import annotations
 import numpy as np
 import pink
 import pinocchio
-from closed_loop import NEAR, Setup, main
-from kinematics import Pose, towards
+from closed_loop import NEAR, Peer, Setup, main
+from kinematics import Pose, forward, towards
 from pink.tasks import FrameTask, PostureTask
 
 POSTURE_COST = 1e-3
@@ -39,7 +39,7 @@ class OrientationTask(FrameTask):
         return super().compute_jacobian(configuration)[3:]
 
 
-class Pink:
+class Pink(Peer):
     """pink.solve_ik."""
 
     package = "pin-pink"
@@ -70,13 +70,16 @@ class Pink:
         posture.set_target(self.setup.start)
         self.tasks = [task, posture]
 
+    def prepare(self, q: np.ndarray) -> None:
+        """A target that is near enough for a constraint."""
+        if self.constraints is not None:
+            here = forward(self.setup.joints, self.setup.tip, q).rotation
+            target = pinocchio.SE3(towards(here, self.goal.rotation, NEAR), self.goal.position)
+            self.constraints[0].set_target(target)
+
     def command(self, q: np.ndarray, v: np.ndarray) -> np.ndarray:
         """One cycle."""
         self.configuration.update(q)
-        if self.constraints is not None:
-            here = self.configuration.get_transform_frame_to_world("ee").rotation
-            target = pinocchio.SE3(towards(here, self.goal.rotation, NEAR), self.goal.position)
-            self.constraints[0].set_target(target)
         return pink.solve_ik(
             self.configuration,
             self.tasks,

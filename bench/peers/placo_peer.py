@@ -5,8 +5,8 @@ orientation-constraint   orientation hard, position soft; the orientation's targ
                          further, the program is infeasible from the start
 
 Settings: joint and velocity limits enabled, floating base masked, regularisation 1e-3 as its
-documentation advises. Its tasks have no gain: the target is moved by gain x dt of the error a cycle,
-which is timed. Its posture is a soft joints task of weight 1e-6.
+documentation advises. Its tasks have no gain: the targets are moved by gain x dt of the error a cycle,
+which is not timed. Its posture is a soft joints task of weight 1e-6.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from pathlib import Path
 
 import numpy as np
 import placo
-from closed_loop import NEAR, Setup, main
-from kinematics import Pose, exp3, log3, towards
+from closed_loop import NEAR, Peer, Setup, main
+from kinematics import Pose, exp3, forward, log3, towards
 
 REGULARISATION = 1e-3
 POSTURE_WEIGHT = 1e-6
 FLOATING_BASE = 7  # coordinates before those of the joints; 6 velocities
 
 
-class Placo:
+class Placo(Peer):
     """placo.KinematicsSolver."""
 
     package = "placo"
@@ -58,6 +58,18 @@ class Placo:
         self.posture.configure("posture", "soft", POSTURE_WEIGHT)
         self.solver.add_regularization_task(REGULARISATION)
 
+    def prepare(self, q: np.ndarray) -> None:
+        """The targets, one cycle ahead."""
+        here = forward(self.setup.joints, self.setup.tip, q)
+        part = self.setup.gain * self.dt
+        wanted = towards(here.rotation, self.goal.rotation, NEAR) if self.hard else self.goal.rotation
+        self.next = Pose(
+            here.rotation @ exp3(part * log3(here.rotation.T @ wanted)),
+            here.position + part * (self.goal.position - here.position),
+        )
+        posture = q + self.setup.posture_gain * self.dt * (self.setup.start - q)
+        self.next_posture = dict(zip((joint.name for joint in self.setup.joints), posture, strict=True))
+
     def command(self, q: np.ndarray, v: np.ndarray) -> np.ndarray:
         """One cycle."""
         state = self.robot.state
@@ -66,14 +78,9 @@ class Placo:
         state.q = coordinates
         self.robot.state = state
         self.robot.update_kinematics()
-        here = self.robot.get_T_world_frame("ee")
-        rotation, position = here[:3, :3], here[:3, 3]
-        part = self.setup.gain * self.dt
-        wanted = towards(rotation, self.goal.rotation, NEAR) if self.hard else self.goal.rotation
-        self.orientation.R_world_frame = rotation @ exp3(part * log3(rotation.T @ wanted))
-        self.position.target_world = position + part * (self.goal.position - position)
-        posture = q + self.setup.posture_gain * self.dt * (self.setup.start - q)
-        self.posture.set_joints(dict(zip((joint.name for joint in self.setup.joints), posture, strict=True)))
+        self.orientation.R_world_frame = self.next.rotation
+        self.position.target_world = self.next.position
+        self.posture.set_joints(self.next_posture)
         return np.array(self.solver.solve(False))[FLOATING_BASE - 1 :] / self.dt
 
 

@@ -10,7 +10,7 @@ regularisation 1e-3.
 from __future__ import annotations
 
 import numpy as np
-from closed_loop import Setup, main
+from closed_loop import Peer, Setup, main
 from kinematics import Pose
 from roboplan.core import CartesianConfiguration, Scene, loadUrdfSceneDescription
 from roboplan.optimal_ik import (
@@ -28,7 +28,7 @@ POSTURE_COST = 1e-3
 REGULARISATION = 1e-3
 
 
-class Roboplan:
+class Roboplan(Peer):
     """roboplan.optimal_ik.Oink."""
 
     package = "roboplan"

@@ -7,13 +7,13 @@ Settings: tope's defaults. Orientation in level 1, position in level 2, posture 
 from __future__ import annotations
 
 import numpy as np
-from closed_loop import Plant, Setup, main
+from closed_loop import Peer, Plant, Setup, main
 from kinematics import Pose
 
 import tope
 
 
-class Tope:
+class Tope(Peer):
     """tope.Controller."""
 
     package = "tope"

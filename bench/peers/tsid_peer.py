@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import numpy as np
 import tsid
-from closed_loop import NEAR, NoCommandError, Setup, main
+from closed_loop import NEAR, NoCommandError, Peer, Setup, main
 from kinematics import Pose, forward, towards
 from rigid_body import RigidBody
 
@@ -27,7 +27,7 @@ ACCELERATION = {
 POSTURE_WEIGHT = 1e-3
 
 
-class Tsid:
+class Tsid(Peer):
     """tsid.InverseDynamicsFormulationAccForce."""
 
     package = "tsid"
@@ -105,12 +105,15 @@ class Tsid:
             self.formulation.addActuationTask(bounds, 1.0, 0, 0.0)
             self.kept.append(bounds)
 
-    def command(self, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """One cycle."""
+    def prepare(self, q: np.ndarray) -> None:
+        """A target that is near enough for a constraint."""
         if self.constrained:
             here = forward(self.setup.joints, self.setup.tip, q).rotation
             turned = towards(here, self.goal.rotation, NEAR)
             self.orientation.setReference(sample_of(turned, self.goal.position))
+
+    def command(self, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """One cycle."""
         solution = self.solver.solve(self.formulation.computeProblemData(self.t, q, v))
         self.t += self.dt
         if solution.status != 0:

@@ -190,7 +190,7 @@ def bench(
         int, typer.Option("--goals", min=1, max=200, help="Random goals a peer, of two hundred.")
     ] = peer_bench.GOALS,
     markdown: Annotated[
-        Path | None,
+        list[Path] | None,
         typer.Option("--markdown", metavar="FILE", help="Put the peers' tables between the marks of a file."),
     ] = None,
 ) -> None:
@@ -200,7 +200,7 @@ def bench(
     the bare rigid-body terms, which any controller needs, are timed at the same states in turn. With --peers,
     tope and other libraries go through one closed loop on that core: cost, jumps, limits, errors, failures.
     """
-    if markdown is not None and not peers:
+    if markdown and not peers:
         raise typer.BadParameter("only with --peers", param_hint="--markdown")
     with progress_bar("Timing") as progress:
         figures = time_cycles(cycles, progress)
@@ -217,10 +217,9 @@ def bench(
         print_peers(console, figures["peers"])
     if json_file is not None:
         write_json(json_file, figures)
-    if markdown is not None:
-        peer_bench.put_markdown(
-            markdown, peer_bench.markdown(figures["peers"], figures["machine"]["processor"])
-        )
+    for file in markdown or ():
+        texts = peer_bench.markdown(figures["peers"], figures["machine"]["processor"])
+        peer_bench.put_markdown(file, texts)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -26,10 +26,12 @@ TOPE_PROGRAM = ROOT / "build" / "Release" / "tope_peer"
 TIMEOUT = 600  # s, of one program
 GOALS = 20
 REACHED = 1e-3  # m and rad
+ROUNDING = 1e-9  # m and rad; a limit crossed by less is not crossed
 NAMED = ("near", "main")
 MODES = ("velocity", "torque")
 DEFAULT = "unilateral"
-BEGIN, END = "<!-- peers: written by `tope bench --peers --markdown` -->", "<!-- end of peers -->"
+# Between these lines of a file the command writes its tables: {which} is "all" or "cheapest".
+BEGIN, END = "<!-- tope bench --peers: {which} -->", "<!-- end of tope bench --peers -->"
 HEADER = (
     "library",
     "priorities",
@@ -216,7 +218,7 @@ def row(peer: Mapping[str, Any]) -> tuple[str, ...]:
         f"{peer['p50_us']:.1f}, {peer['p99_us']:.1f} µs",
         f"{100 * peer['jump']:.3g} %",
         f"{100 * peer['fine_jump']:.3g} %",
-        f"{peer['violation']:.1e}" if peer["violation"] > 0 else "0",
+        f"{peer['violation']:.1e}" if peer["violation"] > ROUNDING else "0",
         f"{1e3 * near['position']:.1f} mm, {1e3 * near['orientation']:.1f} mrad",
         f"{peer['oriented']} of {peer['goals']}",
         f"{peer['failures']}, {runs}" if peer["failures"] else "0",
@@ -249,28 +251,51 @@ def verdicts(peers: Sequence[Mapping[str, Any]]) -> list[str]:
     return sentences
 
 
-def markdown(peers: Sequence[Mapping[str, Any]], processor: str) -> str:
-    """The tables and what goes with them."""
-    parts = [f"Median and 99th percentile, one core of {processor}."]
+def cheapest(peers: Sequence[Mapping[str, Any]], mode: str) -> list[Mapping[str, Any]]:
+    """One of each library in each language: tope's default, of the others what costs least."""
+    chosen: dict[tuple[str, str], Mapping[str, Any]] = {}
+    for peer in in_order(peers, mode):
+        if peer["name"] != "tope" or peer["configuration"] == DEFAULT:
+            chosen.setdefault((peer["name"], peer["language"]), peer)
+    return list(chosen.values())
+
+
+def table(peers: Sequence[Mapping[str, Any]], mode: str) -> str:
+    """Peers of a mode as Markdown."""
+    lines = [f"| {mode} mode | " + " | ".join(HEADER[1:]) + " |", "|---" * len(HEADER) + "|"]
+    for peer in peers:
+        first, *others = row(peer)
+        own = peer["name"] == "tope" and peer["configuration"] == DEFAULT
+        lines.append("| " + " | ".join([f"**{first}**" if own else first, *others]) + " |")
+    return "\n".join(lines)
+
+
+def markdown(peers: Sequence[Mapping[str, Any]], processor: str) -> dict[str, str]:
+    """What goes between the marks of a file: all that was measured, or one configuration of each library."""
+    parts: dict[str, list[str]] = {"all": [f"One core of {processor}."], "cheapest": []}
     for mode in MODES:
-        lines = [f"| {mode} mode | " + " | ".join(HEADER[1:]) + " |", "|---" * len(HEADER) + "|"]
-        for peer in in_order(peers, mode):
-            cells = row(peer)
-            own = peer["name"] == "tope" and peer["configuration"] == DEFAULT
-            lines.append("| " + " | ".join([f"**{cells[0]}**" if own else cells[0], *cells[1:]]) + " |")
-        parts.append("\n".join(lines))
-    parts.append("\n".join(f"* {sentence}." for sentence in verdicts(peers)))
+        parts["all"].append(table(in_order(peers, mode), mode))
+        parts["cheapest"].append(table(cheapest(peers, mode), mode))
+    compared = "\n".join(f"* {sentence}." for sentence in verdicts(peers))
     absent = absences(peers)
-    if absent:
-        parts.append("Not measured: " + "; ".join(absent) + ".")
-    return "\n\n".join(parts)
+    for each in parts.values():
+        each.append(compared)
+        if absent:
+            each.append("Not measured: " + "; ".join(absent) + ".")
+    return {which: "\n\n".join(each) for which, each in parts.items()}
 
 
-def put_markdown(file: Path, text: str) -> None:
+def put_markdown(file: Path, texts: Mapping[str, str]) -> None:
     """Replace what is between the marks of a file; raises Error if it has none."""
     whole = file.read_text(encoding="utf-8")
-    before, begin, rest = whole.partition(BEGIN)
-    _, end, after = rest.partition(END)
-    if not begin or not end:
-        raise _core.Error(f"{file}: no place for the tables: it needs the lines '{BEGIN}' and '{END}'")
-    file.write_text(f"{before}{begin}\n{text}\n{end}{after}", encoding="utf-8")
+    found = 0
+    for which, text in texts.items():
+        before, begin, rest = whole.partition(BEGIN.format(which=which))
+        _, end, after = rest.partition(END)
+        if begin and end:
+            found += 1
+            whole = f"{before}{begin}\n\n{text}\n\n{end}{after}"
+    if found == 0:
+        begins = " or ".join(f"'{BEGIN.format(which=which)}'" for which in texts)
+        raise _core.Error(f"{file}: no place for the tables: it needs a line {begins}, later '{END}'")
+    file.write_text(whole, encoding="utf-8")

@@ -40,7 +40,7 @@ def setups(tmp_path_factory):
     return read
 
 
-class Scripted:
+class Scripted(closed_loop.Peer):
     """A peer that gives the commands it is told to, None for a failure."""
 
     package = "tope"
@@ -125,7 +125,7 @@ def test_the_scenario_is_the_robot_with_its_obstacle(setups):
 
 
 def test_the_plant_moves_as_topes_own(setups):
-    """Its rotor inertias are those that tope derives from the wheels: torques give what they were asked for."""
+    """Its rotor inertias are those that tope derives from the wheels: torques do what was asked for."""
     setup = setups["torque"]
     whole = _core.Robot.from_urdf(scenario.ROBOT / "youbot.urdf", scenario.ROBOT / "youbot.yaml")
     controllers = [
@@ -273,6 +273,19 @@ def test_order_and_verdicts_go_by_cost():
     ]
 
 
+def test_tables_of_all_and_of_the_cheapest(tmp_path):
+    found = [measured(p50=4.0), measured(configuration="chain", p50=3.0)]
+    found += [measured("other", configuration=name, p50=cost) for name, cost in (("a", 6.0), ("b", 5.0))]
+    file = tmp_path / "README.md"
+    marks = [peers.BEGIN.format(which=which) for which in ("cheapest", "all")]
+    file.write_text(f"{marks[0]}\n{peers.END}\nbetween\n{marks[1]}\n{peers.END}\n")
+    peers.put_markdown(file, peers.markdown(found, "abacus"))
+    few, everything = file.read_text().split("between")
+    assert ["chain" in few, "other 1.2, C++: a" in few, "other 1.2, C++: b" in few] == [False, False, True]
+    assert ["chain" in everything, "other 1.2, C++: a" in everything] == [True, True]
+    assert everything.index("unilateral") < everything.index("other")
+
+
 def test_what_is_not_installed_is_said_to_be_absent(tmp_path, monkeypatch):
     monkeypatch.setattr(peers, "ENVIRONMENTS", tmp_path)
     program = peers.Program("placo", "Python", "velocity", "weights")
@@ -335,7 +348,8 @@ def run(*arguments):
 
 def test_the_command_prints_and_writes(quick_bench, tmp_path, capsys):
     readme = tmp_path / "README.md"
-    readme.write_text(f"before\n{peers.BEGIN}\nold\n{peers.END}\nafter\n")
+    begin = peers.BEGIN.format(which="all")
+    readme.write_text(f"before\n{begin}\nold\n{peers.END}\nafter\n")
     figures = tmp_path / "bench.json"
     assert not run("--peers", "--goals", "7", "--json", str(figures), "--markdown", str(readme))
     assert quick_bench == [7]
@@ -344,7 +358,7 @@ def test_the_command_prints_and_writes(quick_bench, tmp_path, capsys):
     assert "Not measured: gone, Python: no wheel" in said
     assert len(json.loads(figures.read_text())["peers"]) == 3
     written = readme.read_text()
-    assert written.startswith(f"before\n{peers.BEGIN}\n")
+    assert written.startswith(f"before\n{begin}\n")
     assert written.endswith(f"\n{peers.END}\nafter\n")
     assert "old" not in written
     assert "| **tope 1.2, C++: unilateral** | strict levels | 4.0, 8.0 µs |" in written
@@ -360,8 +374,8 @@ def test_peers_are_measured_only_when_asked(quick_bench, tmp_path):
 def test_tables_need_their_place(tmp_path):
     file = tmp_path / "README.md"
     file.write_text("nothing\n")
-    with pytest.raises(_core.Error, match="no place for the tables"):
-        peers.put_markdown(file, "tables")
+    with pytest.raises(_core.Error, match=r"no place for the tables.*'<!-- tope bench --peers: all -->'"):
+        peers.put_markdown(file, {"all": "tables"})
     assert file.read_text() == "nothing\n"
 
 

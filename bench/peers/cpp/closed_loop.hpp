@@ -172,8 +172,8 @@ struct Run {
   std::vector<double> times_us{};
 };
 
-/// One run from rest towards a goal. The peer has start(goal, dt) and bool command(q, v, u), which is timed and covers
-/// its kinematics; false: no command.
+/// One run from rest towards a goal. The peer has start(goal, dt); prepare(q), what its user has to compute for it, not
+/// timed; and bool command(q, v, u), which is timed and covers its kinematics. False: no command.
 template <typename Peer>
 Run run(Peer& peer, const Setup& setup, const std::pair<std::string, Pose>& goal, double dt,
         const Plant& plant) {
@@ -186,6 +186,7 @@ Run run(Peer& peer, const Setup& setup, const std::pair<std::string, Pose>& goal
   int failing = 0;
   peer.start(goal.second, dt);
   while (result.cycles < cycles && failing * dt < give_up_s) {
+    peer.prepare(q);
     const auto begin = std::chrono::steady_clock::now();
     const bool answered = peer.command(q, v, u) && u.allFinite();
     result.times_us.push_back(

@@ -43,6 +43,8 @@ class Roboplan {
     motion_ = Vector::Zero(n);
   }
 
+  void prepare(const Vector&) const {}
+
   bool command(const Vector& q, const Vector&, Vector& u) {
     if (!oink_->solveIk(q, tasks_, constraints_, barriers_, motion_, regularisation)) {
       return false;

@@ -28,6 +28,8 @@ class Tope {
     dt_ = dt;
   }
 
+  void prepare(const peers::Vector&) const {}
+
   bool command(const peers::Vector& q, const peers::Vector& v, peers::Vector& u) {
     controller_->update(q, v, t_, u);
     t_ += dt_;

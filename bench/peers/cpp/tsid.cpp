@@ -53,12 +53,15 @@ class Tsid {
     solver_->resize(formulation_->nVar(), formulation_->nEq(), formulation_->nIn());
   }
 
-  bool command(const Vector& q, const Vector& v, Vector& u) {
+  void prepare(const Vector& q) {
     if (constrained_) {
       const peers::Matrix3 here = peers::forward(setup_, q).rotation;
       const peers::Matrix3 turned = peers::towards(here, goal_.rotation, peers::near_rad);
       orientation_->setReference(pinocchio::SE3(turned, goal_.position));
     }
+  }
+
+  bool command(const Vector& q, const Vector& v, Vector& u) {
     const auto& solution = solver_->solve(formulation_->computeProblemData(t_, q, v));
     t_ += dt_;
     if (solution.status != tsid::solvers::HQP_STATUS_OPTIMAL) {
