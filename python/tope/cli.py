@@ -202,6 +202,10 @@ def bench(
     """
     if markdown and not peers:
         raise typer.BadParameter("only with --peers", param_hint="--markdown")
+    for file in markdown or ():  # before minutes of measuring
+        peer_bench.check_marks(file)
+    if json_file is not None:
+        json_file.parent.mkdir(parents=True, exist_ok=True)
     with progress_bar("Timing") as progress:
         figures = time_cycles(cycles, progress)
     if peers:

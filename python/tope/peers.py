@@ -30,7 +30,8 @@ ROUNDING = 1e-9  # m and rad; a limit crossed by less is not crossed
 NAMED = ("near", "main")
 MODES = ("velocity", "torque")
 DEFAULT = "unilateral"
-# Between these lines of a file the command writes its tables: {which} is "all" or "cheapest".
+# Between these lines of a file the command writes its tables; {which} is one of TABLES.
+TABLES = ("all", "cheapest")
 BEGIN, END = "<!-- tope bench --peers: {which} -->", "<!-- end of tope bench --peers -->"
 HEADER = (
     "library",
@@ -272,7 +273,7 @@ def table(peers: Sequence[Mapping[str, Any]], mode: str) -> str:
 
 def markdown(peers: Sequence[Mapping[str, Any]], processor: str) -> dict[str, str]:
     """What goes between the marks of a file: all that was measured, or one configuration of each library."""
-    parts: dict[str, list[str]] = {"all": [f"One core of {processor}."], "cheapest": []}
+    parts = {which: [f"One core of {processor}."] for which in TABLES}
     for mode in MODES:
         parts["all"].append(table(in_order(peers, mode), mode))
         parts["cheapest"].append(table(cheapest(peers, mode), mode))
@@ -285,17 +286,21 @@ def markdown(peers: Sequence[Mapping[str, Any]], processor: str) -> dict[str, st
     return {which: "\n\n".join(each) for which, each in parts.items()}
 
 
+def check_marks(file: Path) -> None:
+    """Raise Error if a file has no place for tables."""
+    text = file.read_text(encoding="utf-8")
+    begins = [BEGIN.format(which=which) for which in TABLES]
+    if not any(END in text.partition(begin)[2] for begin in begins):
+        lines = " or ".join(f"'{begin}'" for begin in begins)
+        raise _core.Error(f"{file}: no place for the tables: it needs a line {lines}, later '{END}'")
+
+
 def put_markdown(file: Path, texts: Mapping[str, str]) -> None:
-    """Replace what is between the marks of a file; raises Error if it has none."""
+    """Replace what is between the marks of a file."""
     whole = file.read_text(encoding="utf-8")
-    found = 0
     for which, text in texts.items():
         before, begin, rest = whole.partition(BEGIN.format(which=which))
         _, end, after = rest.partition(END)
         if begin and end:
-            found += 1
             whole = f"{before}{begin}\n\n{text}\n\n{end}{after}"
-    if found == 0:
-        begins = " or ".join(f"'{BEGIN.format(which=which)}'" for which in texts)
-        raise _core.Error(f"{file}: no place for the tables: it needs a line {begins}, later '{END}'")
     file.write_text(whole, encoding="utf-8")
