@@ -74,7 +74,7 @@ campaign-robustness: build
 	$(BIN)/python bench/robustness.py
 
 # The libraries that `tope bench --peers` measures tope against, each in an environment of its own: ten minutes and more,
-# as tsid is compiled; PEERS=placo for some. Then the tables of README.md and docs/peers.md, ten minutes too.
+# as tsid is compiled; PEERS=placo for some. Then the tables of README.md and docs/peers.md: five minutes.
 .PHONY: peers bench-peers
 peers: build
 	$(BIN)/pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps \
