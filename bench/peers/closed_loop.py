@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
-from kinematics import Joint, Pose, forward, rotation_angle
+from geometry import Joint, Pose, forward, rotation_angle
 
 FINE = 10  # the continuity of a command is judged by cycles so many times shorter
 NAMED = ("near", "main")  # goals that are timed, and run with the short cycle too
@@ -43,6 +43,7 @@ class Setup:
     repeats: int = 1
     gain: float = 0.0  # 1/s
     posture_gain: float = 0.0  # 1/s
+    limit_gain: float = 0.0  # 1/s
     start: np.ndarray = field(default_factory=lambda: np.zeros(0))  # m and rad, as are the limits
     lower: np.ndarray = field(default_factory=lambda: np.zeros(0))
     upper: np.ndarray = field(default_factory=lambda: np.zeros(0))
@@ -81,7 +82,7 @@ def read(file: Path) -> Setup:
             setattr(setup, key, values[0])
         elif key == "repeats":
             setup.repeats = int(values[0])
-        elif key in ("dt", "duration", "gain", "posture_gain"):
+        elif key in ("dt", "duration", "gain", "posture_gain", "limit_gain"):
             setattr(setup, key, float(values[0]))
         else:
             setattr(setup, key, np.array(values, dtype=float))

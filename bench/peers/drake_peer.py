@@ -14,7 +14,7 @@ import logging
 
 import numpy as np
 from closed_loop import NoCommandError, Peer, Setup, main
-from kinematics import Pose, forward, log3
+from geometry import Pose, forward, log3
 from pydrake.common.value import Value
 from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.multibody.inverse_kinematics import (

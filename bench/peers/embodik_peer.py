@@ -12,7 +12,7 @@ from __future__ import annotations
 import embodik
 import numpy as np
 from closed_loop import NoCommandError, Peer, Setup, main
-from kinematics import Pose
+from geometry import Pose
 
 
 class Embodik(Peer):

@@ -6,7 +6,8 @@ orientation-constraint   orientation as an equality, by the argument `constraint
                          kept within 0.75 rad: further, the program is infeasible from the start
 
 Settings: gain x dt as the tasks' gain, PostureTask of cost 1e-3, ConfigurationLimit and VelocityLimit,
-solver daqp as in its examples.
+solver daqp as in its examples. The configuration limit's gain is 0.95, as it comes, in `default`, else
+limit gain x dt.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import mink
 import mujoco
 import numpy as np
 from closed_loop import NEAR, Peer, Setup, main
-from kinematics import Pose, forward, towards
+from geometry import Pose, forward, towards
 
 POSTURE_COST = 1e-3
 PRIORITIES = {
@@ -49,7 +50,7 @@ class Mink(Peer):
         self.settings = f"daqp, damping {self.damping:g}, posture cost {POSTURE_COST:g}"
         self.model = mujoco.MjModel.from_xml_path(setup.urdf)
         speeds = {joint.name: bound for joint, bound in zip(setup.joints, setup.velocity, strict=True)}
-        self.limits = [mink.ConfigurationLimit(self.model), mink.VelocityLimit(self.model, speeds)]
+        self.velocity_limit = mink.VelocityLimit(self.model, speeds)
 
     def start(self, goal: Pose, dt: float) -> None:
         """Begin anew."""
@@ -69,6 +70,11 @@ class Mink(Peer):
         posture = mink.PostureTask(self.model, cost=POSTURE_COST, gain=self.setup.posture_gain * dt)
         posture.set_target(self.setup.start)
         self.tasks = [task, posture]
+        if self.kind == "default":
+            limit = mink.ConfigurationLimit(self.model)
+        else:
+            limit = mink.ConfigurationLimit(self.model, gain=self.setup.limit_gain * dt)
+        self.limits = [limit, self.velocity_limit]
 
     def prepare(self, q: np.ndarray) -> None:
         """A target that is near enough for a constraint."""

@@ -5,9 +5,9 @@ weights                  orientation and position weighted 100 to 1, damping 1e-
 orientation-constraint   orientation as an equality, by the argument `constraints` of solve_ik, its target
                          kept within 0.75 rad: further, the program is infeasible from the start
 
-Settings: gain x dt as the tasks' gain, PostureTask of cost 1e-3, its default limits (configuration and
-velocity), solver quadprog, which its documentation names. Its safety check is off: it ends the program
-on an overshoot of 1e-6.
+Settings: gain x dt as the tasks' gain, PostureTask of cost 1e-3, configuration and velocity limits, solver
+quadprog, which its documentation names. The configuration limit's gain is 0.5, as it comes, in
+`default`, else limit gain x dt. Its safety check is off: it ends the program on an overshoot of 1e-6.
 """
 
 from __future__ import annotations
@@ -16,7 +16,8 @@ import numpy as np
 import pink
 import pinocchio
 from closed_loop import NEAR, Peer, Setup, main
-from kinematics import Pose, forward, towards
+from geometry import Pose, forward, towards
+from pink.limits import ConfigurationLimit, VelocityLimit
 from pink.tasks import FrameTask, PostureTask
 
 POSTURE_COST = 1e-3
@@ -69,6 +70,10 @@ class Pink(Peer):
         posture = PostureTask(cost=POSTURE_COST, gain=self.setup.posture_gain * dt)
         posture.set_target(self.setup.start)
         self.tasks = [task, posture]
+        self.limits = None  # its own: both kinds, gain 0.5 a cycle
+        if self.kind != "default":
+            limit = ConfigurationLimit(self.model, config_limit_gain=self.setup.limit_gain * dt)
+            self.limits = [limit, VelocityLimit(self.model)]
 
     def prepare(self, q: np.ndarray) -> None:
         """A target that is near enough for a constraint."""
@@ -88,6 +93,7 @@ class Pink(Peer):
             damping=self.damping,
             constraints=self.constraints,
             safety_break=False,
+            limits=self.limits,
         )
 
 

@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 import placo
 from closed_loop import NEAR, Peer, Setup, main
-from kinematics import Pose, exp3, forward, log3, towards
+from geometry import Pose, exp3, forward, log3, towards
 
 REGULARISATION = 1e-3
 POSTURE_WEIGHT = 1e-6

@@ -1,9 +1,10 @@
 """RoboPlan's OInK: a quadratic program of tasks. Configurations:
 
-weights      orientation and position in one priority, weighted 1 to 1
+default      orientation and position in one priority, costs 1 and 1
+weights      the same, weighted 100 to 1
 priorities   orientation in priority 1, position in 2, posture in 3: projected costs of one program
 
-Settings: gain x dt as the tasks' gain, PositionLimit of gain 1, VelocityLimit, posture cost 1e-3,
+Settings: gain x dt as the tasks' gain, PositionLimit of limit gain x dt, VelocityLimit, posture cost 1e-3,
 regularisation 1e-3.
 """
 
@@ -11,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 from closed_loop import Peer, Setup, main
-from kinematics import Pose
+from geometry import Pose
 from roboplan.core import CartesianConfiguration, Scene, loadUrdfSceneDescription
 from roboplan.optimal_ik import (
     ConfigurationTask,
@@ -36,7 +37,9 @@ class Roboplan(Peer):
     def __init__(self, setup: Setup, configuration: str) -> None:
         self.setup = setup
         self.ranked = configuration == "priorities"
-        self.priorities = "two priorities by projected costs" if self.ranked else "weights 1:1"
+        self.orientation_cost = 100.0 if configuration == "weights" else 1.0
+        weights = f"weights {self.orientation_cost:g}:1"
+        self.priorities = "priorities by projected costs" if self.ranked else weights
         self.settings = f"regularisation {REGULARISATION:g}, posture cost {POSTURE_COST:g}"
         self.scene = Scene("youbot", loadUrdfSceneDescription(setup.urdf))
 
@@ -61,14 +64,14 @@ class Roboplan(Peer):
         if self.ranked:
             self.tasks = [frame_task(0.0, 1.0, 1), frame_task(1.0, 0.0, 2)]
         else:
-            self.tasks = [frame_task(1.0, 1.0, 1)]
+            self.tasks = [frame_task(1.0, self.orientation_cost, 1)]
         options = ConfigurationTaskOptions(
             task_gain=setup.posture_gain * dt, priority=3 if self.ranked else 1
         )
         costs = np.full(n, POSTURE_COST)
         self.tasks.append(ConfigurationTask(self.oink, setup.start.copy(), costs, options))
         self.constraints = [
-            PositionLimit(self.oink, 1.0),
+            PositionLimit(self.oink, setup.limit_gain * dt),
             VelocityLimit(self.oink, dt, setup.velocity.copy()),
         ]
         self.motion = np.zeros(n)

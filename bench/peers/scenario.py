@@ -16,7 +16,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
-from kinematics import Joint, Pose, exp3, forward, rotation_of_quaternion, rotation_of_rpy
+from geometry import Joint, Pose, exp3, forward, rotation_of_quaternion, rotation_of_rpy
 
 ROBOT = Path(__file__).parents[2] / "robots" / "youbot"
 OBSTACLE = 0.35  # m; what base_x may reach
@@ -26,6 +26,9 @@ TURN = 2.5  # rad about the end-effector's axis: joint 5 comes near its limit
 AHEAD = {"near": 0.45, "main": 0.9}  # m; the second one is out of reach behind the obstacle
 GAIN = 2.0  # 1/s, of orientation and position
 POSTURE_GAIN = 1.0  # 1/s
+LIMIT_GAIN = (
+    10.0  # 1/s, speed allowed per distance to a limit where a library lets it be chosen; tope's default
+)
 DT = 1e-3  # s
 DURATION = {"velocity": 5.0, "torque": 8.0}  # s; a double pole takes longer than a single one
 GOALS = 200
@@ -57,6 +60,7 @@ def write(folder: Path, mode: str, goals: int, repeats: int) -> Path:
         ("repeats", [repeats]),
         ("gain", [GAIN]),
         ("posture_gain", [POSTURE_GAIN]),
+        ("limit_gain", [LIMIT_GAIN]),
         ("start", START),
         ("lower", limits("lower")),
         ("upper", limits("upper")),

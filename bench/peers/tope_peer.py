@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 from closed_loop import Peer, Plant, Setup, main
-from kinematics import Pose
+from geometry import Pose
 
 import tope
 

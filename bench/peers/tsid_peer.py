@@ -8,8 +8,8 @@ orientation-constraint   orientation in level 0, an equality beside the limits; 
 Settings: as its examples do, TaskSE3Equality twice with a mask, k_p = gain^2 and k_d = 2 gain in the
 world's axes; TaskJointPosture with weight 1e-3; TaskJointPosVelAccBounds in level 0 with position,
 velocity and acceleration bounds; SolverHQuadProgFast. It takes levels 0 and 1 alone, so strict order of
-three tasks is not to be had. The acceleration bounds that its limits need are the user's: those here
-make it fail least (of 2, 5, 10, 20 and 50).
+three tasks is not to be had. Its limits need acceleration bounds and a horizon, which are the user's
+choice: those here make it fail and jump least (of 2, 5, 20 and 50 rad/s2; of 1 ms to 0.2 s).
 """
 
 from __future__ import annotations
@@ -17,13 +17,14 @@ from __future__ import annotations
 import numpy as np
 import tsid
 from closed_loop import NEAR, NoCommandError, Peer, Setup, main
-from kinematics import Pose, forward, towards
+from geometry import Pose, forward, towards
 from rigid_body import RigidBody
 
 ACCELERATION = {
     False: 2.0,
     True: 20.0,
 }  # rad/s2 or m/s2, of the limits; by whether the orientation is a constraint
+HORIZON = 0.2  # s, in which its limits must not be reached
 POSTURE_WEIGHT = 1e-3
 
 
@@ -38,7 +39,7 @@ class Tsid(Peer):
         self.constrained = kind == "orientation-constraint"
         self.acceleration = ACCELERATION[self.constrained]
         self.priorities = "orientation a constraint, rest by weights" if self.constrained else "weights 100:1"
-        bounds = f"acceleration bounds {self.acceleration:g}"
+        bounds = f"acceleration bounds {self.acceleration:g}, horizon of limits {HORIZON:g} s"
         self.settings = f"k_p {setup.gain**2:g}, k_d {2 * setup.gain:g}, {bounds}"
 
     def start(self, goal: Pose, dt: float) -> None:
@@ -92,7 +93,7 @@ class Tsid(Peer):
     def add_limits(self) -> None:
         """Of positions, speeds and, where asked for, torques."""
         setup = self.setup
-        limits = tsid.TaskJointPosVelAccBounds("limits", self.robot, self.dt, False)
+        limits = tsid.TaskJointPosVelAccBounds("limits", self.robot, HORIZON, False)
         limits.setPositionBounds(setup.lower, setup.upper)
         limits.setVelocityBounds(setup.velocity)
         limits.setAccelerationBounds(self.acceleration * np.ones(len(setup.start)))

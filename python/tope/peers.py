@@ -14,6 +14,7 @@ import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from statistics import median
 from typing import Any
 
 from tope import _core
@@ -39,6 +40,7 @@ HEADER = (
     "cycle p50, p99",
     "jump at 1 ms",
     "0.1 ms",
+    "goals, 1 ms",
     "limit crossed by",
     "near goal missed by",
     "oriented",
@@ -86,7 +88,7 @@ class Program:
 def programs() -> list[Program]:
     """All that are measured; C++ first, so that what is compared runs close together."""
     tope = ("tope", (DEFAULT, "chain"))
-    roboplan = ("roboplan", ("weights", "priorities"))
+    roboplan = ("roboplan", ("default", "weights", "priorities"))
     tsid = ("tsid", ("weights", "weights+torque-bounds", "orientation-constraint"))
     program = ("default", "weights", "orientation-constraint")
     wanted: Sequence[tuple[str, str, Sequence[tuple[str, Sequence[str]]]]] = (
@@ -184,6 +186,7 @@ def collected(measured: Mapping[str, Any]) -> dict[str, Any]:
         "jump": jump,
         "fine_jump": fine_jump,
         "jump_ratio": jump / fine_jump if fine_jump > 0 else None,
+        "goal_jump": median(run["jump"] for run in random),
         "violation": max(run["violation"] for run in runs),
         "speed_excess": max(run["speed_excess"] for run in runs),
         "command_excess": max(run["command_excess"] for run in runs),
@@ -219,6 +222,7 @@ def row(peer: Mapping[str, Any]) -> tuple[str, ...]:
         f"{peer['p50_us']:.1f}, {peer['p99_us']:.1f} µs",
         f"{100 * peer['jump']:.3g} %",
         f"{100 * peer['fine_jump']:.3g} %",
+        f"{100 * peer['goal_jump']:.3g} %",
         f"{peer['violation']:.1e}" if peer["violation"] > ROUNDING else "0",
         f"{1e3 * near['position']:.1f} mm, {1e3 * near['orientation']:.1f} mrad",
         f"{peer['oriented']} of {peer['goals']}",

@@ -50,6 +50,7 @@ struct Setup {
   int repeats = 1;
   double gain = 0.0;
   double posture_gain = 0.0;
+  double limit_gain = 0.0;
   Vector start{}, lower{}, upper{}, velocity{}, effort{}, rotor_inertia{};
   std::vector<Joint> joints{};
   Pose tip{};
@@ -84,7 +85,8 @@ inline Setup read(const std::string& file) {
   const std::map<std::string, double*> scalars{{"dt", &setup.dt},
                                                {"duration", &setup.duration},
                                                {"gain", &setup.gain},
-                                               {"posture_gain", &setup.posture_gain}};
+                                               {"posture_gain", &setup.posture_gain},
+                                               {"limit_gain", &setup.limit_gain}};
   const std::map<std::string, std::string*> texts{
       {"urdf", &setup.urdf}, {"config", &setup.config}, {"mode", &setup.mode}};
   std::ifstream lines(file);

@@ -18,8 +18,11 @@ constexpr double regularisation = 1e-3;
 
 class Roboplan {
  public:
-  Roboplan(const peers::Setup& setup, bool ranked)
-      : setup_(setup), ranked_(ranked), scene_("youbot", roboplan::loadUrdfSceneDescription(setup.urdf)) {}
+  Roboplan(const peers::Setup& setup, const std::string& configuration)
+      : setup_(setup),
+        ranked_(configuration == "priorities"),
+        orientation_cost_(configuration == "weights" ? 100.0 : 1.0),
+        scene_("youbot", roboplan::loadUrdfSceneDescription(setup.urdf)) {}
 
   void start(const peers::Pose& goal, double dt) {
     const Eigen::Index n = setup_.start.size();
@@ -31,14 +34,14 @@ class Roboplan {
       add_frame_task(goal, 0.0, 1.0, 1);
       add_frame_task(goal, 1.0, 0.0, 2);
     } else {
-      add_frame_task(goal, 1.0, 1.0, 1);
+      add_frame_task(goal, 1.0, orientation_cost_, 1);
     }
     roboplan::ConfigurationTaskOptions options;
     options.task_gain = setup_.posture_gain * dt;
     options.priority = ranked_ ? 3 : 1;
     tasks_.push_back(std::make_shared<roboplan::ConfigurationTask>(
         *oink_, setup_.start, Vector(Vector::Constant(n, posture_cost)), options));
-    constraints_.push_back(std::make_shared<roboplan::PositionLimit>(*oink_, 1.0));
+    constraints_.push_back(std::make_shared<roboplan::PositionLimit>(*oink_, setup_.limit_gain * dt));
     constraints_.push_back(std::make_shared<roboplan::VelocityLimit>(*oink_, dt, setup_.velocity));
     motion_ = Vector::Zero(n);
   }
@@ -70,6 +73,7 @@ class Roboplan {
 
   const peers::Setup& setup_;
   bool ranked_;
+  double orientation_cost_;
   double dt_ = 0.0;
   roboplan::Scene scene_;
   std::unique_ptr<roboplan::Oink> oink_;
@@ -83,9 +87,11 @@ class Roboplan {
 
 int main(int, char** arguments) {
   const peers::Setup setup = peers::read(arguments[1]);
-  const bool ranked = std::string(arguments[2]) == "priorities";
-  Roboplan peer(setup, ranked);
+  const std::string configuration = arguments[2];
+  Roboplan peer(setup, configuration);
+  const std::string priorities = configuration == "priorities" ? "priorities by projected costs"
+                                 : configuration == "weights"  ? "weights 100:1"
+                                                               : "weights 1:1";
   peers::measure(peer, setup,
-                 {"roboplan", ROBOPLAN_VERSION, ranked ? "two priorities by projected costs" : "weights 1:1",
-                  "regularisation 0.001, posture cost 0.001"});
+                 {"roboplan", ROBOPLAN_VERSION, priorities, "regularisation 0.001, posture cost 0.001"});
 }

@@ -19,6 +19,7 @@ namespace {
 using peers::Vector;
 
 constexpr double posture_weight = 1e-3;
+constexpr double horizon = 0.2;  // s, in which its limits must not be reached
 
 class Tsid {
  public:
@@ -97,7 +98,7 @@ class Tsid {
   }
 
   void add_limits() {
-    limits_ = std::make_unique<tsid::tasks::TaskJointPosVelAccBounds>("limits", *robot_, dt_, false);
+    limits_ = std::make_unique<tsid::tasks::TaskJointPosVelAccBounds>("limits", *robot_, horizon, false);
     limits_->setPositionBounds(setup_.lower, setup_.upper);
     limits_->setVelocityBounds(setup_.velocity);
     limits_->setAccelerationBounds(acceleration() * Vector::Ones(setup_.start.size()));
@@ -139,6 +140,7 @@ int main(int, char** arguments) {
   Tsid peer(setup, arguments[2]);
   const std::string settings = "k_p " + short_text(setup.gain * setup.gain) + ", k_d " +
                                short_text(2.0 * setup.gain) + ", acceleration bounds " +
-                               short_text(peer.acceleration());
+                               short_text(peer.acceleration()) + ", horizon of limits " +
+                               short_text(horizon) + " s";
   peers::measure(peer, setup, {"tsid", TSID_VERSION, peer.priorities(), settings}, peers::rigid_body(setup));
 }
