@@ -24,6 +24,7 @@ GIVE_UP = 0.2  # s of failures in a row after which a run ends
 NEAR = (
     0.75  # rad; a target turned as far asks for no more than the joints' speed, which a constraint must not
 )
+ORIENTATION_WEIGHT = 1e4  # beside 1 of the position, where weights stand for levels; a cost is its root
 BRAKING = 50.0  # rad/s2 or m/s2; how joints stop where a torque controller fails
 
 

@@ -1,7 +1,7 @@
 """mink: a quadratic program of weighted tasks, on MuJoCo. Configurations:
 
 default                  one FrameTask, costs 1 and 1
-weights                  orientation and position weighted 100 to 1, damping 1e-3
+weights                  orientation and position at costs 100 to 1, weights 1e4 to 1, damping 1e-3
 orientation-constraint   orientation as an equality, by the argument `constraints` of solve_ik, its target
                          kept within 0.75 rad: further, the program is infeasible from the start
 
@@ -15,13 +15,13 @@ from __future__ import annotations
 import mink
 import mujoco
 import numpy as np
-from closed_loop import NEAR, Peer, Setup, main
+from closed_loop import NEAR, ORIENTATION_WEIGHT, Peer, Setup, main
 from geometry import Pose, forward, towards
 
 POSTURE_COST = 1e-3
 PRIORITIES = {
     "default": "weights 1:1",
-    "weights": "weights 100:1",
+    "weights": "weights 1e4:1",
     "orientation-constraint": "orientation a constraint, rest by weights",
 }
 
@@ -59,7 +59,7 @@ class Mink(Peer):
         target = mink.SE3.from_rotation_and_translation(mink.SO3.from_matrix(goal.rotation), goal.position)
         part = self.setup.gain * dt
         self.constraints: list[OrientationTask] | None = None
-        orientation_cost = 100.0 if self.kind == "weights" else 1.0
+        orientation_cost = ORIENTATION_WEIGHT**0.5 if self.kind == "weights" else 1.0
         if self.kind == "orientation-constraint":
             orientation = OrientationTask("ee", "body", position_cost=0.0, orientation_cost=1.0, gain=part)
             orientation.set_target(target)

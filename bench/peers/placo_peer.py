@@ -1,6 +1,6 @@
 """PlaCo: a quadratic program with soft and hard tasks. Configurations:
 
-weights                  orientation and position soft, weighted 100 to 1
+weights                  orientation and position soft, weighted 1e4 to 1
 orientation-constraint   orientation hard, position soft; the orientation's target is kept within 0.75 rad:
                          further, the program is infeasible from the start
 
@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 import placo
-from closed_loop import NEAR, Peer, Setup, main
+from closed_loop import NEAR, ORIENTATION_WEIGHT, Peer, Setup, main
 from geometry import Pose, exp3, forward, log3, towards
 
 REGULARISATION = 1e-3
@@ -32,7 +32,7 @@ class Placo(Peer):
     def __init__(self, setup: Setup, configuration: str) -> None:
         self.setup = setup
         self.hard = configuration == "orientation-constraint"
-        self.priorities = "orientation a constraint, rest by weights" if self.hard else "weights 100:1"
+        self.priorities = "orientation a constraint, rest by weights" if self.hard else "weights 1e4:1"
         self.settings = f"regularisation {REGULARISATION:g}, posture weight {POSTURE_WEIGHT:g}"
         with tempfile.TemporaryDirectory() as folder:  # it wants a folder with a robot.urdf
             (Path(folder) / "robot.urdf").write_bytes(Path(setup.urdf).read_bytes())
@@ -50,7 +50,7 @@ class Placo(Peer):
         self.solver.enable_velocity_limits(True)
         self.orientation = self.solver.add_orientation_task("ee", goal.rotation)
         self.orientation.configure(
-            "orientation", "hard" if self.hard else "soft", 1.0 if self.hard else 100.0
+            "orientation", "hard" if self.hard else "soft", 1.0 if self.hard else ORIENTATION_WEIGHT
         )
         self.position = self.solver.add_position_task("ee", goal.position)
         self.position.configure("position", "soft", 1.0)

@@ -1,7 +1,7 @@
 """RoboPlan's OInK: a quadratic program of tasks. Configurations:
 
 default      orientation and position in one priority, costs 1 and 1
-weights      the same, weighted 100 to 1
+weights      the same, weighted 1e4 to 1
 priorities   orientation in priority 1, position in 2, posture in 3: projected costs of one program
 
 Settings: gain x dt as the tasks' gain, PositionLimit of limit gain x dt, VelocityLimit, posture cost 1e-3,
@@ -11,7 +11,7 @@ regularisation 1e-3.
 from __future__ import annotations
 
 import numpy as np
-from closed_loop import Peer, Setup, main
+from closed_loop import ORIENTATION_WEIGHT, Peer, Setup, main
 from geometry import Pose
 from roboplan.core import CartesianConfiguration, Scene, loadUrdfSceneDescription
 from roboplan.optimal_ik import (
@@ -37,8 +37,8 @@ class Roboplan(Peer):
     def __init__(self, setup: Setup, configuration: str) -> None:
         self.setup = setup
         self.ranked = configuration == "priorities"
-        self.orientation_cost = 100.0 if configuration == "weights" else 1.0
-        weights = f"weights {self.orientation_cost:g}:1"
+        self.orientation_cost = ORIENTATION_WEIGHT if configuration == "weights" else 1.0
+        weights = "weights 1e4:1" if configuration == "weights" else "weights 1:1"
         self.priorities = "priorities by projected costs" if self.ranked else weights
         self.settings = f"regularisation {REGULARISATION:g}, posture cost {POSTURE_COST:g}"
         self.scene = Scene("youbot", loadUrdfSceneDescription(setup.urdf))

@@ -1,6 +1,6 @@
 """TSID: inverse dynamics as one quadratic program a cycle. Configurations:
 
-weights                  orientation and position in level 1, weighted 100 to 1
+weights                  orientation and position in level 1, weighted 1e4 to 1
 weights+torque-bounds    the same with bounds of the torques
 orientation-constraint   orientation in level 0, an equality beside the limits; its target is kept within
                          0.75 rad: further, the program is infeasible from the start
@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import numpy as np
 import tsid
-from closed_loop import NEAR, NoCommandError, Peer, Setup, main
+from closed_loop import NEAR, ORIENTATION_WEIGHT, NoCommandError, Peer, Setup, main
 from geometry import Pose, forward, towards
 from rigid_body import RigidBody
 
@@ -38,7 +38,7 @@ class Tsid(Peer):
         kind, _, self.torque_bounds = configuration.partition("+")
         self.constrained = kind == "orientation-constraint"
         self.acceleration = ACCELERATION[self.constrained]
-        self.priorities = "orientation a constraint, rest by weights" if self.constrained else "weights 100:1"
+        self.priorities = "orientation a constraint, rest by weights" if self.constrained else "weights 1e4:1"
         bounds = f"acceleration bounds {self.acceleration:g}, horizon of limits {HORIZON:g} s"
         self.settings = f"k_p {setup.gain**2:g}, k_d {2 * setup.gain:g}, {bounds}"
 
@@ -55,7 +55,7 @@ class Tsid(Peer):
         if self.constrained:
             self.orientation = self.add_frame_task("orientation", goal, 3, 1.0, 0)
         else:
-            self.orientation = self.add_frame_task("orientation", goal, 3, 100.0, 1)
+            self.orientation = self.add_frame_task("orientation", goal, 3, ORIENTATION_WEIGHT, 1)
         self.add_frame_task("position", goal, 0, 1.0, 1)
         self.add_posture()
         self.add_limits()

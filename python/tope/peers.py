@@ -180,13 +180,14 @@ def collected(measured: Mapping[str, Any]) -> dict[str, Any]:
     coarse = [run for run in runs if run["dt"] == dt]
     named = [run for run in coarse if run["goal"] in NAMED]
     random = [run for run in coarse if run["goal"] not in NAMED]
+    driven = [run["jump"] for run in random if not run["gave_up"]]
     fine = [run for run in runs if run["dt"] < dt]
     jump, fine_jump = (max(run["jump"] for run in each) for each in (named, fine))
     return dict(measured) | {
         "jump": jump,
         "fine_jump": fine_jump,
         "jump_ratio": jump / fine_jump if fine_jump > 0 else None,
-        "goal_jump": median(run["jump"] for run in random),
+        "goal_jump": median(driven) if driven else None,
         "violation": max(run["violation"] for run in runs),
         "speed_excess": max(run["speed_excess"] for run in runs),
         "command_excess": max(run["command_excess"] for run in runs),
@@ -222,7 +223,7 @@ def row(peer: Mapping[str, Any]) -> tuple[str, ...]:
         f"{peer['p50_us']:.1f}, {peer['p99_us']:.1f} µs",
         f"{100 * peer['jump']:.3g} %",
         f"{100 * peer['fine_jump']:.3g} %",
-        f"{100 * peer['goal_jump']:.3g} %",
+        "-" if peer["goal_jump"] is None else f"{100 * peer['goal_jump']:.3g} %",
         f"{peer['violation']:.1e}" if peer["violation"] > ROUNDING else "0",
         f"{1e3 * near['position']:.1f} mm, {1e3 * near['orientation']:.1f} mrad",
         f"{peer['oriented']} of {peer['goals']}",

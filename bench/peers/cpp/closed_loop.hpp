@@ -25,8 +25,9 @@ using Vector3 = Eigen::Vector3d;
 
 constexpr int fine = 10;           // the continuity of a command is judged by cycles so many times shorter
 constexpr double give_up_s = 0.2;  // failures in a row after which a run ends
-constexpr double near_rad = 0.75;  // a target turned as far asks for no more than the joints' speed
-constexpr double braking = 50.0;   // rad/s2 or m/s2; how joints stop where a torque controller fails
+constexpr double orientation_weight = 1e4;  // beside 1 of the position, where weights stand for levels
+constexpr double near_rad = 0.75;           // a target turned as far asks for no more than the joints' speed
+constexpr double braking = 50.0;            // rad/s2 or m/s2; how joints stop where a torque controller fails
 
 struct Pose {
   Matrix3 rotation = Matrix3::Identity();

@@ -21,7 +21,7 @@ class Roboplan {
   Roboplan(const peers::Setup& setup, const std::string& configuration)
       : setup_(setup),
         ranked_(configuration == "priorities"),
-        orientation_cost_(configuration == "weights" ? 100.0 : 1.0),
+        orientation_cost_(configuration == "weights" ? peers::orientation_weight : 1.0),
         scene_("youbot", roboplan::loadUrdfSceneDescription(setup.urdf)) {}
 
   void start(const peers::Pose& goal, double dt) {
@@ -90,7 +90,7 @@ int main(int, char** arguments) {
   const std::string configuration = arguments[2];
   Roboplan peer(setup, configuration);
   const std::string priorities = configuration == "priorities" ? "priorities by projected costs"
-                                 : configuration == "weights"  ? "weights 100:1"
+                                 : configuration == "weights"  ? "weights 1e4:1"
                                                                : "weights 1:1";
   peers::measure(peer, setup,
                  {"roboplan", ROBOPLAN_VERSION, priorities, "regularisation 0.001, posture cost 0.001"});

@@ -30,7 +30,7 @@ class Tsid {
 
   double acceleration() const { return constrained_ ? 20.0 : 2.0; }  // rad/s2 or m/s2
   std::string priorities() const {
-    return constrained_ ? "orientation a constraint, rest by weights" : "weights 100:1";
+    return constrained_ ? "orientation a constraint, rest by weights" : "weights 1e4:1";
   }
 
   void start(const peers::Pose& goal, double dt) {
@@ -45,7 +45,8 @@ class Tsid {
     formulation_ = std::make_unique<tsid::InverseDynamicsFormulationAccForce>("tsid", *robot_, false);
     formulation_->computeProblemData(0.0, setup_.start, Vector::Zero(n));
     orientation_ = frame_task("orientation", goal, 3);
-    formulation_->addMotionTask(*orientation_, constrained_ ? 1.0 : 100.0, constrained_ ? 0 : 1, 0.0);
+    formulation_->addMotionTask(*orientation_, constrained_ ? 1.0 : peers::orientation_weight,
+                                constrained_ ? 0 : 1, 0.0);
     position_ = frame_task("position", goal, 0);
     formulation_->addMotionTask(*position_, 1.0, 1, 0.0);
     add_posture();
