@@ -66,7 +66,9 @@ def log3(rotation: np.ndarray) -> np.ndarray:
         return sine / 2
     if angle < math.pi - 1e-5:
         return sine * angle / (2 * math.sin(angle))
-    outer = (rotation + np.eye(3)) / 2  # axis times its transpose, as the sine vanishes near pi
+    outer = (rotation + rotation.T) / 4 + np.eye(
+        3
+    ) / 2  # axis times its transpose near pi, where the sine vanishes
     column = outer[:, int(np.argmax(np.diag(outer)))]
     axis = column / np.linalg.norm(column)
     return axis * angle * (1 if axis @ sine >= 0 else -1)
