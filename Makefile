@@ -73,6 +73,16 @@ campaign-torque-limits: build
 campaign-robustness: build
 	$(BIN)/python bench/robustness.py
 
+# The libraries that `tope bench --peers` measures tope against, each in an environment of its own: ten minutes and more,
+# as tsid is compiled; PEERS=placo for some. Then the tables of README.md and docs/peers.md: five minutes.
+.PHONY: peers bench-peers
+peers: build
+	$(BIN)/pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps \
+	  -C cmake.define.TOPE_BUILD_PEERS=ON -e .
+	$(BIN)/python bench/peers/install.py $(PEERS)
+bench-peers: build
+	$(BIN)/tope bench --peers --json runs/bench-peers.json --markdown README.md --markdown docs/peers.md
+
 # The experiments in MuJoCo, with faults: figures of the README and of docs/experiment.md. Half a minute.
 .PHONY: experiment
 experiment: build
@@ -109,6 +119,8 @@ lock:
 	$(BIN)/pip install --quiet uv
 	$(BIN)/uv pip compile --universal --python-version 3.10 --all-extras --no-header --no-annotate --upgrade \
 	  pyproject.toml -o requirements.lock
+	for peer in bench/peers/requirements/*.in; do $(BIN)/uv pip compile --quiet --universal --python-version 3.10 \
+	  --no-header --no-annotate --upgrade $$peer -o $${peer%.in}.txt || exit 1; done
 
 clean:
 	rm -rf $(VENV) build runs viewer/node_modules python/tope/viewer

@@ -16,8 +16,10 @@ from rich.table import Table
 from rich.text import Text
 
 from tope import _core, extras, words
+from tope import peers as peer_bench
 from tope.bench import HEADER as BENCH_HEADER
 from tope.bench import bench as time_cycles
+from tope.bench import pinned
 from tope.bench import row as bench_row
 from tope.compare import compare as run_comparison
 from tope.compare import known_methods
@@ -181,22 +183,47 @@ def play(
 def bench(
     cycles: Annotated[int, typer.Option("--cycles", min=1, help="Cycles a case, at least.")] = 200_000,
     json_file: Annotated[Path | None, typer.Option("--json", metavar="FILE", help="Also write JSON.")] = None,
+    peers: Annotated[
+        bool, typer.Option("--peers", help="Also measure the libraries that `make peers` installed.")
+    ] = False,
+    goals: Annotated[
+        int, typer.Option("--goals", min=1, max=200, help="Random goals a peer, of two hundred.")
+    ] = peer_bench.GOALS,
+    markdown: Annotated[
+        list[Path] | None,
+        typer.Option("--markdown", metavar="FILE", help="Put the peers' tables between the marks of a file."),
+    ] = None,
 ) -> None:
     """Time a cycle of the controller on this machine.
 
     On the youBot with limits, orientation, position and posture, along recorded closed loops, on one core;
-    the bare rigid-body terms, which any controller needs, are timed at the same states in turn.
+    the bare rigid-body terms, which any controller needs, are timed at the same states in turn. With --peers,
+    tope and other libraries go through one closed loop on that core: cost, jumps, limits, errors, failures.
     """
+    if markdown and not peers:
+        raise typer.BadParameter("only with --peers", param_hint="--markdown")
+    for file in markdown or ():  # before minutes of measuring
+        peer_bench.check_marks(file)
+    if json_file is not None:
+        json_file.parent.mkdir(parents=True, exist_ok=True)
     with progress_bar("Timing") as progress:
         figures = time_cycles(cycles, progress)
+    if peers:
+        with progress_bar("Measuring peers") as progress, pinned():
+            figures["peers"] = peer_bench.measure_peers(goals, progress)
     table = Table(*BENCH_HEADER)
     for case in figures["cases"]:
         table.add_row(*map(Text, bench_row(case)))
     console = output()
     console.print(Text(f"{figures['machine']['processor']}, core {figures['machine']['core']}"))
     console.print(table)
+    if peers:
+        print_peers(console, figures["peers"])
     if json_file is not None:
         write_json(json_file, figures)
+    for file in markdown or ():
+        texts = peer_bench.markdown(figures["peers"], figures["machine"]["processor"])
+        peer_bench.put_markdown(file, texts)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -265,6 +292,19 @@ def pairs(rows: Sequence[tuple[str, str]]) -> Table:
 def written(folder: Path, name: str) -> tuple[str, str]:
     """Where the result is."""
     return ("Report" if name == "report.html" else "Written to", str(folder / name))
+
+
+def print_peers(console: Console, peers: Sequence[dict[str, Any]]) -> None:
+    """Two tables, how tope compares, and who was absent."""
+    for mode in peer_bench.MODES:
+        table = Table(*peer_bench.HEADER, title=f"{mode} mode")
+        for peer in peer_bench.in_order(peers, mode):
+            table.add_row(*map(Text, peer_bench.row(peer)))
+        console.print(table)
+    for sentence in peer_bench.verdicts(peers):
+        console.print(Text(sentence))
+    for sentence in peer_bench.absences(peers):
+        console.print(Text(f"Not measured: {sentence}"))
 
 
 def print_inequalities(console: Console, inequalities: Sequence[dict[str, Any]]) -> None:

@@ -1,0 +1,172 @@
+"""Writes the scenario that tope and its peers are measured in: one file that all of their programs read.
+
+The youBot of robots/youbot, its gripper closed, its base blocked by an obstacle at x = 0.35 m. Its URDF
+is written anew without what only some peers read: shapes, friction, a joint without an end. Rotor
+inertias, which a URDF cannot say, go into the scenario.
+
+Each line of the file is a key and its values: see Setup in closed_loop.py.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import xml.etree.ElementTree as ET
+from collections.abc import Iterable
+from pathlib import Path
+
+import numpy as np
+from geometry import Joint, Pose, exp3, forward, rotation_of_quaternion, rotation_of_rpy
+
+ROBOT = Path(__file__).parents[2] / "robots" / "youbot"
+OBSTACLE = 0.35  # m; what base_x may reach
+FAR = 1000.0  # rad; limits of the yaw, which the robot has none of but some peers ask for
+START = np.array([0, 0, 0, 0, 0.6, -1.2, 0.8, 0.3])  # m and rad
+TURN = 2.5  # rad about the end-effector's axis: joint 5 comes near its limit
+AHEAD = {"near": 0.45, "main": 0.9}  # m; the second one is out of reach behind the obstacle
+GAIN = 2.0  # 1/s, of orientation and position
+POSTURE_GAIN = 1.0  # 1/s
+LIMIT_GAIN = (
+    10.0  # 1/s, speed allowed per distance to a limit where a library lets it be chosen; tope's default
+)
+DT = 1e-3  # s
+DURATION = {"velocity": 5.0, "torque": 8.0}  # s; a double pole takes longer than a single one
+GOALS = 200
+SEED = 42
+WHEELS = 4
+
+
+def write(folder: Path, mode: str, goals: int, repeats: int) -> Path:
+    """Write the scenario of a mode and the robot's files to a folder; give the scenario's file."""
+    robot = ET.parse(ROBOT / "youbot.urdf").getroot()
+    plain(robot)
+    urdf = folder / "youbot.urdf"
+    ET.ElementTree(robot).write(urdf)
+    joints, tip = chain(robot)
+    inertia = rotor_inertia((ROBOT / "youbot.yaml").read_text(encoding="utf-8"))
+    config = folder / "youbot.yaml"
+    entries = ", ".join(f"{joint.name}: {inertia[joint.name]!r}" for joint in joints)
+    config.write_text(f"rotor_inertia: {{{entries}}}\n", encoding="utf-8")
+
+    def limits(key: str) -> list[float]:
+        return [float(robot.find(f"joint[@name='{joint.name}']/limit").get(key)) for joint in joints]
+
+    lines: list[tuple[str, Iterable[object]]] = [
+        ("urdf", [urdf.resolve()]),
+        ("config", [config.resolve()]),
+        ("mode", [mode]),
+        ("dt", [DT]),
+        ("duration", [DURATION[mode]]),
+        ("repeats", [repeats]),
+        ("gain", [GAIN]),
+        ("posture_gain", [POSTURE_GAIN]),
+        ("limit_gain", [LIMIT_GAIN]),
+        ("start", START),
+        ("lower", limits("lower")),
+        ("upper", limits("upper")),
+        ("velocity", limits("velocity")),
+        ("effort", limits("effort")),
+        ("rotor_inertia", [inertia[joint.name] for joint in joints]),
+    ]
+    for joint in joints:
+        kind = "prismatic" if joint.prismatic else "revolute"
+        lines.append(("joint", [joint.name, kind, *joint.axis, *joint.rotation.flat, *joint.position]))
+    lines.append(("tip", [*tip.rotation.flat, *tip.position]))
+    for name, goal in targets(forward(joints, tip, START), goals).items():
+        lines.append(("goal", [name, *goal.rotation.flat, *goal.position]))
+    file = folder / f"{mode}.txt"
+    file.write_text("".join(" ".join([key, *map(text, values)]) + "\n" for key, values in lines))
+    return file
+
+
+def text(value: object) -> str:
+    """A value that reads back as the same."""
+    return repr(float(value)) if isinstance(value, (float, np.floating)) else str(value)
+
+
+def plain(robot: ET.Element) -> None:
+    """Change the URDF to what every peer reads alike, with the obstacle."""
+    for link in robot.iter("link"):
+        for shape in [*link.findall("visual"), *link.findall("collision")]:
+            link.remove(shape)
+    for joint in robot.iter("joint"):
+        for dynamics in joint.findall("dynamics"):
+            joint.remove(dynamics)
+        limit = joint.find("limit")
+        if joint.get("name", "").startswith("gripper_finger"):  # closed: robots/youbot/youbot.yaml
+            joint.set("type", "fixed")
+        elif joint.get("type") == "continuous":
+            joint.set("type", "revolute")
+            limit.attrib |= {"lower": str(-FAR), "upper": str(FAR)}
+        elif joint.get("name") == "base_x":
+            limit.set("upper", str(OBSTACLE))
+    robot.set("name", "youbot")
+    mujoco = ET.SubElement(robot, "mujoco")  # read by MuJoCo alone: keeps the frame `ee`
+    ET.SubElement(mujoco, "compiler", {"fusestatic": "false"})
+
+
+def chain(robot: ET.Element) -> tuple[list[Joint], Pose]:
+    """The moving joints up to the frame `ee`, and the frame's pose in the last one."""
+    parents = {joint.find("child").get("link"): joint for joint in robot.iter("joint")}
+    path: list[ET.Element] = []
+    link = "ee"
+    while link in parents:
+        path.insert(0, parents[link])
+        link = parents[link].find("parent").get("link")
+    joints: list[Joint] = []
+    rotation, position = np.eye(3), np.zeros(3)
+    for joint in path:
+        origin = joint.find("origin")
+        position = position + rotation @ numbers(origin.get("xyz"))
+        rotation = rotation @ rotation_of_rpy(*numbers(origin.get("rpy")))
+        if joint.get("type") != "fixed":
+            prismatic = joint.get("type") == "prismatic"
+            axis = numbers(joint.find("axis").get("xyz"))
+            joints.append(Joint(joint.get("name"), prismatic, axis, rotation, position))
+            rotation, position = np.eye(3), np.zeros(3)
+    return joints, Pose(rotation, position)
+
+
+def numbers(values: str) -> np.ndarray:
+    """Numbers with blanks between them."""
+    return np.array([float(value) for value in values.split()])
+
+
+def rotor_inertia(config: str) -> dict[str, float]:
+    """Rotor inertias at the joints [kg m2 or kg], the base's by way of its wheels, from the robot's file."""
+    found = {
+        name: float(value) for name, value in re.findall(r"^ +(\w+): +([\d.e+-]+)", config, re.MULTILINE)
+    }
+    wheels = WHEELS * found["wheel_rotor_inertia"] / found["wheel_radius"] ** 2
+    arm = found["half_wheelbase"] + found["half_track"]
+    return found | {"base_x": wheels, "base_y": wheels, "base_yaw": wheels * arm**2}
+
+
+def targets(start: Pose, count: int) -> dict[str, Pose]:
+    """A goal in reach, one out of reach, and so many of the two hundred of bench/goals.py, evenly taken."""
+    turned = start.rotation @ exp3(np.array([0, 0, -TURN]))
+    named = {name: Pose(turned, start.position + np.array([ahead, 0, 0])) for name, ahead in AHEAD.items()}
+    random = np.random.default_rng(SEED)
+    goals = []
+    for _ in range(GOALS):
+        box = np.array([random.random(), random.random(), random.random()])
+        rotation = rotation_of_quaternion(random.standard_normal(4))
+        position = np.array([start.position[0] + 1.5 * box[0], -0.75 + 1.5 * box[1], 1.5 * box[2]])
+        goals.append(Pose(rotation, position))
+    taken = [index * GOALS // count for index in range(count)]
+    return named | {f"goal_{index}": goals[index] for index in taken}
+
+
+def main() -> None:
+    """Write the scenarios of both modes."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--goals", type=int, default=20)
+    parser.add_argument("--repeats", type=int, default=5, help="of the timed runs of C++ programs")
+    arguments = parser.parse_args()
+    for mode in DURATION:
+        print(write(arguments.folder, mode, arguments.goals, arguments.repeats))
+
+
+if __name__ == "__main__":
+    main()
