@@ -1,16 +1,26 @@
 #include <tope/law/open_basis.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace tope {
 
-OpenBasis::OpenBasis(int n) : open_(n, n), image_(n, n), rows_(n, n), reflector_(n) { reset(); }
+OpenBasis::OpenBasis(int n)
+    : open_(n, n),
+      image_(n, n),
+      rows_(n, n),
+      reflectors_(Matrix::Zero(PanelMatrix::padded(n), n)),
+      along_(reflectors_),
+      triangle_(n, n),
+      shares_(n) {
+  reset();
+}
 
 void OpenBasis::reset() {
   whole_ = true;
   orthonormal_ = true;
   with_image_ = false;
-  open_.set_identity(reflector_.size());
+  open_.set_identity(triangle_.rows());
 }
 
 void OpenBasis::reset(const OpenBasis& other) {
@@ -40,30 +50,70 @@ void OpenBasis::close(const PanelMatrix& b) {
   close_rows();
 }
 
-/// Householder reflections bring the rows to lower triangular form, Z along with them; its leading columns are then
-/// theirs.
 void OpenBasis::close_rows() {
-  const Eigen::Index rank = rows_.rows();
-  for (Eigen::Index i = 0; i < rank; ++i) {
-    const double* row = &rows_(i, i);
-    const Eigen::Index count = rows_.cols() - i;
+  reflect_rows();
+  take_out(open_, whole_);
+  if (with_image_) {
+    take_out(image_, false);
+  } else {
+    image_.drop_front(rows_.rows());
+  }
+  whole_ = false;
+}
+
+/// Householder reflections H_i = I - t_ii v_i v_i^T bring the rows to lower triangular form. Their product is
+/// I - V T V^T with T upper triangular (Schreiber, Van Loan 1989).
+void OpenBasis::reflect_rows() {
+  const Eigen::Index cols = rows_.cols();
+  for (Eigen::Index i = 0; i < rows_.rows(); ++i) {
+    double* v = reflectors_.col(i).data();
+    std::fill(v, v + i, 0.0);
+    const double* row = &rows_(i, 0);
     double even = 0.0;  // two sums, as each waits for its last term
     double odd = 0.0;
-    for (Eigen::Index j = 0; j < count; ++j) {
-      const double value = row[PanelMatrix::height * j];
-      reflector_[j] = value;
-      (j % 2 == 0 ? even : odd) += value * value;
+    for (Eigen::Index j = i; j < cols; ++j) {
+      v[j] = row[PanelMatrix::height * j];
+      (j % 2 == 0 ? even : odd) += v[j] * v[j];
     }
     const double norm = std::sqrt(even + odd);
-    const double pivot = reflector_[0] + std::copysign(norm, reflector_[0]);
-    reflector_[0] = pivot;
-    const double factor = 1.0 / (norm * std::abs(pivot));  // 2 / |reflector|^2
-    if (i + 1 < rank) {
-      turn(rows_, i, reflector_.data(), factor);
+    v[i] += std::copysign(norm, v[i]);
+    const double factor = 1.0 / (norm * std::abs(v[i]));  // 2 / |v|^2
+    triangle_(i, i) = factor;
+    if (i + 1 < rows_.rows()) {
+      turn(rows_, i, v + i, factor);
     }
-    turn_all(i, reflector_.data(), factor);
+    for (Eigen::Index k = 0; k < i; ++k) {
+      shares_[k] = reflectors_.col(k).segment(i, cols - i).dot(reflectors_.col(i).segment(i, cols - i));
+    }
+    for (Eigen::Index k = 0; k < i; ++k) {
+      triangle_(k, i) = -factor * triangle_.row(k).segment(k, i - k).dot(shares_.segment(k, i - k));
+    }
   }
-  drop(rank);
+}
+
+/// M <- the last columns of M (I - V T V^T). Where M is the identity, M V is V.
+void OpenBasis::take_out(PanelMatrix& m, bool identity) {
+  const Eigen::Index rank = rows_.rows();
+  const Eigen::Index cols = m.cols();
+  Matrix& along = identity ? reflectors_ : along_;
+  for (Eigen::Index i = 0; i < rank; ++i) {
+    if (identity) {
+      along.col(i).tail(along.rows() - cols).setZero();
+    } else {
+      multiply(m, reflectors_.col(i).data(), along.col(i).data());
+    }
+  }
+  m.drop_front(rank);
+  for (Eigen::Index j = 0; j < m.cols(); ++j) {
+    for (Eigen::Index i = 0; i < rank; ++i) {  // T V^T, one column
+      double share = 0.0;
+      for (Eigen::Index k = i; k < rank; ++k) {
+        share += triangle_(i, k) * reflectors_(rank + j, k);
+      }
+      shares_[i] = share;
+    }
+    subtract_from_column(m, j, along, shares_.data(), rank);
+  }
 }
 
 void OpenBasis::close(const RowSpectrum& spectrum, const Vector& shares) {
@@ -73,24 +123,24 @@ void OpenBasis::close(const RowSpectrum& spectrum, const Vector& shares) {
     if (shares[i] >= 1.0) {
       rows_.append_row(spectrum.direction(i));
     } else if (shares[i] > nothing) {
-      turn_all(0, spectrum.direction(i), shares[i] / spectrum.squared(i));
+      turn_all(spectrum.direction(i), shares[i] / spectrum.squared(i));
       orthonormal_ = false;
     }
   }
   close_rows();  // v_i are orthogonal: the shares taken before leave these as they are
 }
 
-void OpenBasis::turn_all(Eigen::Index first, const double* v, double factor) {
-  turn(open_, first, v, factor);
+void OpenBasis::turn_all(const double* v, double factor) {
+  turn(open_, 0, v, factor);
   if (with_image_) {
-    turn(image_, first, v, factor);
+    turn(image_, 0, v, factor);
   }
   whole_ = false;
 }
 
-void OpenBasis::drop(Eigen::Index count) {
-  open_.drop_front(count);
-  image_.drop_front(count);
+void OpenBasis::close_all() {
+  open_.drop_front(size());
+  image_.drop_front(image_.cols());
 }
 
 }  // namespace tope

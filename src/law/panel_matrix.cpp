@@ -146,6 +146,17 @@ void subtract(const PanelMatrix& a, double scale, const PanelMatrix& b, PanelMat
   }
 }
 
+void subtract_from_column(PanelMatrix& m, Eigen::Index j, const Matrix& w, const double* shares,
+                          Eigen::Index count) {
+  for (Eigen::Index p = 0; p < m.panels(); ++p) {
+    Column sum = column(m.panel(p), j);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      sum -= shares[i] * column(w.col(i).data(), p);
+    }
+    column(m.panel(p), j) = sum;
+  }
+}
+
 void turn(PanelMatrix& m, Eigen::Index first, const double* v, double scale) {
   const Eigen::Index count = m.cols() - first;
   const Eigen::Index panels = m.panels();

@@ -10,32 +10,47 @@
 namespace tope {
 namespace {
 
-/// Turns coordinates p and q so that M's element between them is zero, and V along with it.
-template <typename Small>
-void turn(Small& m, Small& v, int p, int q) {
-  const double off = m(p, q);
+/// Turns coordinates p and q so that M's element between them is zero, and V along with it; false where it was already.
+/// The indices are known to the compiler, so that M and V stay in registers.
+template <int p, int q, typename Small>
+bool turn(Small& m, Small& v, double negligible) {
+  const double off = m(q, p);
+  if (!(std::abs(off) > negligible)) {
+    return false;
+  }
   const double difference = m(q, q) - m(p, p);
   const double radius = std::sqrt(difference * difference + 4.0 * off * off);
   const double sum = std::abs(difference) + radius;
   const double tangent = std::copysign(2.0, difference) * off / sum;  // of the smaller angle
   const double cosine = std::sqrt(sum / (2.0 * radius));
   const double sine = tangent * cosine;
+  const auto mix = [cosine, sine](double& first, double& second) {
+    const double old = first;
+    first = cosine * old - sine * second;
+    second = sine * old + cosine * second;
+  };
   m(p, p) -= tangent * off;
   m(q, q) += tangent * off;
-  m(p, q) = 0.0;
   m(q, p) = 0.0;
   for (int k = 0; k < Small::RowsAtCompileTime; ++k) {
-    const double first = v(k, p);
-    v(k, p) = cosine * first - sine * v(k, q);
-    v(k, q) = sine * first + cosine * v(k, q);
-    if (k == p || k == q) {
-      continue;
+    mix(v(k, p), v(k, q));
+    if (k != p && k != q) {  // the lower triangle alone
+      mix(k > p ? m(k, p) : m(p, k), k > q ? m(k, q) : m(q, k));
     }
-    const double other = m(k, p);
-    m(k, p) = cosine * other - sine * m(k, q);
-    m(k, q) = sine * other + cosine * m(k, q);
-    m(p, k) = m(k, p);
-    m(q, k) = m(k, q);
+  }
+  return true;
+}
+
+/// Turns all pairs from (p, q) on, row by row; false when every one was negligible.
+template <int p, int q, typename Small>
+bool sweep(Small& m, Small& v, double negligible) {
+  const bool turned = turn<p, q>(m, v, negligible);
+  if constexpr (p + 1 < q) {
+    return sweep<p + 1, q>(m, v, negligible) || turned;
+  } else if constexpr (q + 1 < Small::RowsAtCompileTime) {
+    return sweep<0, q + 1>(m, v, negligible) || turned;
+  } else {
+    return turned;
   }
 }
 
@@ -86,17 +101,7 @@ void SymmetricEigen::Solver::rotate() {
   Small m = reduced_;
   Small v = Small::Identity();
   const double negligible = rounding * m.diagonal().cwiseAbs().maxCoeff();
-  bool diagonal = false;
-  for (int sweep = 0; sweep < most_sweeps && !diagonal; ++sweep) {
-    diagonal = true;
-    for (int q = 1; q < size; ++q) {
-      for (int p = 0; p < q; ++p) {
-        if (std::abs(m(p, q)) > negligible) {
-          turn(m, v, p, q);
-          diagonal = false;
-        }
-      }
-    }
+  for (int i = 0; i < most_sweeps && sweep<0, 1>(m, v, negligible); ++i) {
   }
   std::array<int, size> order{};
   std::iota(order.begin(), order.end(), 0);

@@ -109,8 +109,12 @@ bool Unilateral::solve_level(const PanelMatrix& task, std::size_t position) {
   }
   const bool solved = solver_.solve(task, residual_, squared_damping(residual_.head(padded).squaredNorm()),
                                     open_.image(), lower_, upper_, active_[position]);
-  add_product(open_.columns(), solver_.z().data(), y_.data());
   motion_.head(lower_.size()) += solver_.row_values();
+  if (open_.has_image()) {
+    add_product(open_.columns(), solver_.z().data(), y_.data());
+  } else {
+    y_ = motion_;
+  }
   return solved;
 }
 

@@ -21,6 +21,7 @@ class OpenBasis {
   int size() const { return static_cast<int>(open_.cols()); }                ///< d, columns of Z
   const PanelMatrix& columns() const { return open_; }                       ///< Z (n x d)
   const PanelMatrix& image() const { return with_image_ ? image_ : open_; }  ///< T Z (n x d)
+  bool has_image() const { return with_image_; }
   /// A Z (m x d): in `workspace`, or A itself while all directions are open.
   const PanelMatrix& project(const PanelMatrix& a, PanelMatrix& workspace) const;
 
@@ -31,20 +32,24 @@ class OpenBasis {
   /// True when Z^T Z = I: no direction has been taken out by a share.
   bool orthonormal() const { return orthonormal_; }
   /// No direction is open.
-  void close_all() { drop(size()); }
+  void close_all();
 
  private:
-  void turn_all(Eigen::Index first, const double* v, double factor);
   void close_rows();
-  void drop(Eigen::Index count);
+  void reflect_rows();
+  void take_out(PanelMatrix& m, bool identity);
+  void turn_all(const double* v, double factor);
 
   PanelMatrix open_;
   PanelMatrix image_;
   bool with_image_ = false;
   bool whole_ = true;  // Z is the identity
   bool orthonormal_ = true;
-  PanelMatrix rows_;  // what is to be taken out whole (m x d)
-  Vector reflector_;
+  PanelMatrix rows_;   // what is to be taken out whole (m x d)
+  Matrix reflectors_;  // V (d x m)
+  Matrix along_;       // M V (n x m), padded
+  Matrix triangle_;    // T (m x m)
+  Vector shares_;
 };
 
 }  // namespace tope

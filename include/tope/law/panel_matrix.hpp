@@ -141,6 +141,9 @@ void multiply_columns(const PanelMatrix& m, PanelMatrix& out);
 void scale(PanelMatrix& m, double factor);
 /// out = A - scale B.
 void subtract(const PanelMatrix& a, double scale, const PanelMatrix& b, PanelMatrix& out);
+/// Column j of M -= the first `count` columns of W (padded rows), each times its share.
+void subtract_from_column(PanelMatrix& m, Eigen::Index j, const Matrix& w, const double* shares,
+                          Eigen::Index count);
 /// M <- M (I - scale v v^T), where v has the coordinates from column `first` on and zeros before.
 void turn(PanelMatrix& m, Eigen::Index first, const double* v, double scale);
 
