@@ -83,6 +83,11 @@ peers: build
 bench-peers: build
 	$(BIN)/tope bench --peers --json runs/bench-peers.json --markdown README.md --markdown docs/peers.md
 
+# How a cycle's cost grows with joints, limits in transition and levels: docs/scaling.md. Two minutes.
+.PHONY: scaling
+scaling: build
+	$(BIN)/python bench/scaling.py
+
 # The experiments in MuJoCo, with faults: figures of the README and of docs/experiment.md. Half a minute.
 .PHONY: experiment
 experiment: build

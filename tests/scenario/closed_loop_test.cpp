@@ -13,6 +13,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <map>
 #include <string>
@@ -46,6 +47,31 @@ Matrix3 goal_rotation() {
 }  // namespace
 
 BOOST_AUTO_TEST_SUITE(closed_loop)
+
+BOOST_AUTO_TEST_CASE(repeats_bit_for_bit) {
+  for (const std::string mode : {"velocity", "torque"}) {
+    for (const std::string& method : limit_method_names()) {
+      BOOST_TEST_CONTEXT(mode << ", " << method) {
+        const auto file = source_path("bench/cycle_" + mode + ".yaml");  // many limits act in it
+        const Scenario scenario = Scenario::load(
+            file, {{"limits.method", method},
+                   {"limits.conditions", "report"},
+                   {"limits.potential_field", "{joints: [base_x], influence: 0.1, strength: 0.2}"}});
+        ClosedLoop first(scenario);
+        ClosedLoop second(scenario);
+        for (int cycle = 0; cycle < 1500; ++cycle) {
+          first.control();
+          second.control();
+          BOOST_TEST_REQUIRE(std::memcmp(first.command().data(), second.command().data(),
+                                         sizeof(double) * static_cast<std::size_t>(first.command().size())) ==
+                             0);
+          first.move();
+          second.move();
+        }
+      }
+    }
+  }
+}
 
 BOOST_AUTO_TEST_CASE(is_controller_and_plant_in_turn) {
   const Scenario scenario = velocity_scenario();
