@@ -54,6 +54,17 @@ test:
 test-cpp:
 	$(BIN)/ctest --test-dir $(BUILD) --output-on-failure -j 2
 
+# The C++ tests under the address and undefined-behaviour sanitizers: all, or some rooms: ROOMS="law limit".
+SANITIZED := build/Sanitize
+ROOMS     ?= common controller law limit plant reference robot scenario task
+.PHONY: sanitize
+sanitize: setup
+	$(BIN)/cmake -S . -B $(SANITIZED) -G Ninja -DCMAKE_MAKE_PROGRAM=$(abspath $(BIN))/ninja -DCMAKE_BUILD_TYPE=Release \
+	  -DCMAKE_CXX_FLAGS_RELEASE=-O1 -DTOPE_SANITIZE=ON -DTOPE_BUILD_TESTS=ON -DTOPE_BUILD_PYTHON=ON \
+	  -DPython_EXECUTABLE=$(abspath $(BIN))/python
+	$(BIN)/cmake --build $(SANITIZED) --target $(addsuffix _tests,$(ROOMS))
+	for room in $(ROOMS); do echo $$room; $(SANITIZED)/tests/$${room}_tests --log_level=error || exit 1; done
+
 test-python: viewer-tests
 	$(BIN)/pytest
 

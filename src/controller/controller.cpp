@@ -11,6 +11,9 @@
 namespace tope {
 namespace {
 
+// A state beyond this is an error of what measures it; its square must not overflow on the way. [rad, m or per second]
+constexpr double kLargest = 1e6;
+
 Matrix command_weight(const Robot& robot, const std::vector<double>& joint_weights) {
   if (joint_weights.empty()) {
     return Matrix::Identity(robot.nv(), robot.nv());
@@ -222,8 +225,9 @@ void Controller::rebuild() {
 }
 
 bool Controller::valid(const VectorArg& q, const VectorArg& v, double t, const Eigen::Ref<Vector>& u) const {
+  // written so that what is no number fails too
   return q.size() == robot_.nq() && v.size() == robot_.nv() && u.size() == robot_.nv() && std::isfinite(t) &&
-         q.allFinite() && v.allFinite();
+         (q.array().abs() <= kLargest).all() && (v.array().abs() <= kLargest).all();
 }
 
 const Status& Controller::update(const VectorArg& q, const VectorArg& v, double t,
@@ -249,6 +253,11 @@ const Status& Controller::update(const VectorArg& q, const VectorArg& v, double 
   }
   law_.solve(stack_, solution_);
   report(torque_mode() ? bound_torque() : bound_velocity());
+  if (!command_.allFinite()) {  // a target that moves said what is no number
+    status_.add(Event::bad_input);
+    stand_still(u);
+    return status_;
+  }
   observe_tasks();
   u = command_;
   return status_;
@@ -262,6 +271,7 @@ void Controller::stand_still(Eigen::Ref<Vector> u) const {
   }
   constexpr double damping = 4.0;  // [1/s]
   u = terms_.bias() - damping * terms_.mass_matrix().diagonal().cwiseProduct(terms_.velocity());
+  u = u.cwiseMax(-robot_.effort_limit()).cwiseMin(robot_.effort_limit());
 }
 
 void Controller::fill_limits(const VectorArg& q, const VectorArg& v) {

@@ -11,6 +11,22 @@ thread_local long calls = 0;
 
 }  // namespace
 
+#ifdef __SANITIZE_ADDRESS__  // which replaces the heap itself, and tells of every call
+
+// of <sanitizer/allocator_interface.h>, which not every compiler brings
+extern "C" int __sanitizer_install_malloc_and_free_hooks(  // NOLINT(bugprone-reserved-identifier)
+    void (*malloc_hook)(const volatile void*, std::size_t), void (*free_hook)(const volatile void*));
+
+namespace {
+
+const int hooks = __sanitizer_install_malloc_and_free_hooks(
+    [](const volatile void*, std::size_t) { ++calls; },
+    [](const volatile void* memory) { calls += memory == nullptr ? 0 : 1; });
+
+}  // namespace
+
+#else
+
 // glibc's own functions under the names it keeps for replacements
 extern "C" {
 void* __libc_malloc(std::size_t size);                           // NOLINT(bugprone-reserved-identifier)
@@ -55,6 +71,8 @@ void free(void* memory) noexcept {
   __libc_free(memory);
 }
 }
+
+#endif
 
 namespace tope::test {
 
