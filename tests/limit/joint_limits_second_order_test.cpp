@@ -128,7 +128,7 @@ BOOST_AUTO_TEST_CASE(sides_mirror_each_other) {
   BOOST_TEST(std::abs(limits.motion_lower()[kJoint] + bound) <= 1e-12);
 }
 
-/// Longest period that the condition of control-law.md section 4 admits for a push with `acceleration`.
+/// Longest period that condition (C) of docs/theory.md admits for a push with `acceleration`.
 double threshold(const Robot& robot, Ramp shape, double acceleration) {
   const double v_max = robot.velocity_limit()[kJoint];
   double low = 0.0;
