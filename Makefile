@@ -54,6 +54,24 @@ test:
 test-cpp:
 	$(BIN)/ctest --test-dir $(BUILD) --output-on-failure -j 2
 
+# Hostile files and hostile calls, SECONDS of each: a crash, a hang or a command that is no number ends it.
+SECONDS ?= 600
+.PHONY: fuzz
+fuzz: build
+	mkdir -p runs/fuzz
+	for target in files update; do $(BIN)/python tests/fuzz/fuzz_$$target.py -max_total_time=$(SECONDS) -timeout=10 \
+	  -rss_limit_mb=4000 -max_len=4096 -len_control=0 -artifact_prefix=runs/fuzz/$$target- || exit 1; done
+
+# States close to limits, ties and singularities: does the command's jump shrink with the period? COUNT=600 for some.
+.PHONY: campaign-continuity
+campaign-continuity: build
+	$(BIN)/python bench/continuity.py --count $(or $(COUNT),10000)
+
+# Ten million cycles in each mode, memory and time watched. Three minutes.
+.PHONY: soak
+soak: build
+	$(BIN)/python bench/soak.py
+
 # The C++ tests under the address and undefined-behaviour sanitizers: all, or some rooms: ROOMS="law limit".
 SANITIZED := build/Sanitize
 ROOMS     ?= common controller law limit plant reference robot scenario task

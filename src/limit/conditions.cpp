@@ -112,6 +112,16 @@ Condition second_order_headroom_fits(const Robot& robot, const JointLimits& limi
           .advice = text("lower limits.unilateral.headroom to at most ", 0.5 * width)};
 }
 
+/// Below, a joint's two bounds contradict each other at speeds that each allows: docs/theory.md, 5.7.
+Condition servo_keeps_up(const JointLimits& limits) {
+  return {.name = "servo as fast as the limits",
+          .joint = "",
+          .expression = "gain <= servo_gain",
+          .value = limits.gain(),
+          .bound = limits.options().servo_gain,
+          .advice = text("raise limits.servo_gain to at least ", limits.gain(), " 1/s")};
+}
+
 /// What a limit row asks of a joint's drive, over the gain: the speed lost per 1 / gain.
 double braking_speed(const JointLimits& limits, LimitMethod method, int joint) {
   const double by_row =
@@ -181,6 +191,9 @@ std::vector<Condition> torque_conditions(const Robot& robot, const JointLimits& 
     return conditions;
   }
   conditions.push_back(second_order_servo_is_stable(limits, dt));
+  if (method == LimitMethod::unilateral) {
+    conditions.push_back(servo_keeps_up(limits));
+  }
   for (int joint = 0; joint < limits.size(); ++joint) {
     if (!limits.limited(joint)) {
       continue;

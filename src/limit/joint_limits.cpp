@@ -79,9 +79,12 @@ void JointLimits::update(const VectorArg& q) {
     side_[j] = to_upper <= to_lower ? 1.0 : -1.0;
     activation_[j] = ramp(options_.ramp, 1.0 - distance / buffer_[j]);
     const double rate = side_[j] > 0.0 ? upper_rate_[j] : lower_rate_[j];
-    target_[j] = std::isfinite(distance) ? side_[j] * gain_ * (distance - buffer_[j]) + rate : 0.0;
-
     const double v_max = velocity_limit_[j];
+    // far beyond a limit the row would lead back faster than the joint may move
+    target_[j] = std::isfinite(distance)
+                     ? std::clamp(side_[j] * gain_ * (distance - buffer_[j]) + rate, -v_max, v_max)
+                     : 0.0;
+
     const double ahead = gain_ * (to_upper - options_.margin) + upper_receding(j);
     const double behind = gain_ * (to_lower - options_.margin) + lower_receding(j);
     motion_upper_[j] = std::clamp(ahead, -0.5 * v_max, v_max);

@@ -80,6 +80,23 @@ BOOST_AUTO_TEST_CASE(drives_that_cannot_hold_are_named) {
   BOOST_TEST(brake->advice.find("cannot hold the robot against gravity") != std::string::npos);
 }
 
+BOOST_AUTO_TEST_CASE(unilateral_needs_a_servo_as_fast_as_its_limits) {
+  const Robot robot = youbot();
+  const auto list = [&](double servo_gain, LimitMethod method) {
+    const JointLimits limits(robot, {.gain = 2.0, .servo_gain = servo_gain});
+    return torque_conditions(robot, limits, method, 0.05, 1e-3, Vector::Constant(8, 1e3));
+  };
+  const auto slow = list(1.9, LimitMethod::unilateral);
+  const Condition* servo = find(slow, "as fast as the limits", "");
+  BOOST_REQUIRE(servo != nullptr);
+  BOOST_TEST(!servo->holds());
+  BOOST_TEST(servo->advice.find("at least 2 1/s") != std::string::npos);
+  const auto equal = list(2.0, LimitMethod::unilateral);
+  BOOST_TEST(find(equal, "as fast as the limits", "")->holds());
+  const auto rows = list(1.9, LimitMethod::chain);
+  BOOST_TEST(find(rows, "as fast as the limits", "") == nullptr);
+}
+
 BOOST_AUTO_TEST_CASE(servo_must_be_stable) {
   const auto list = conditions({.gain = 10.0}, LimitMethod::chain, 0.2);
   const Condition* servo = find(list, "servo", "");

@@ -183,3 +183,10 @@ def test_bad_state_commands_no_motion(robot: tope.Robot) -> None:
 def test_bad_input_is_refused(robot: tope.Robot, build: object, message: str) -> None:
     with pytest.raises(tope.ConfigError, match=message):
         build(robot)  # type: ignore[operator]
+
+
+def test_errors_quote_what_is_no_text(tmp_path: Path) -> None:
+    file = tmp_path / "broken.yaml"
+    file.write_bytes(b"*\xff\xff\n")
+    with pytest.raises(tope.ConfigError, match=r"broken\.yaml:1: not YAML: .*\\xff"):
+        tope.load_scenario(file)
