@@ -76,6 +76,10 @@ YamlReader::YamlReader(const YAML::Node& node, std::string prefix, std::shared_p
 
 YamlReader YamlReader::load(const std::filesystem::path& file, const Overrides& overrides) {
   YAML::Node root;
+  std::error_code no_error;
+  if (std::filesystem::is_directory(file, no_error)) {
+    throw ConfigError(file.string() + ": is a folder, expected a file");
+  }
   try {
     root = YAML::LoadFile(file.string());
   } catch (const YAML::BadFile&) {
