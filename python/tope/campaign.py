@@ -29,7 +29,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tope import _core, distributions, yaml_entry
-from tope.distributions import Distribution, Leaves
+from tope.distributions import Context, Distribution, Leaves
 from tope.simulation import as_text
 from tope.yaml_entry import Entry, Place
 
@@ -105,7 +105,8 @@ class Campaign:
         random = np.random.default_rng([self.seed, sample])
         let: dict[str, Any] = {}
         for rule in self.let:
-            names[rule.key] = let[rule.key] = rule.distribution.draw(random, names)
+            let[rule.key] = rule.distribution.draw(random, names)
+            names.update(inside(let[rule.key], rule.key))
         keys: dict[str, Any] = {}
         self.follow(self.sample, random, names, keys)
         self.follow(rules, np.random.default_rng([self.seed, sample, 1]), names, keys)
@@ -120,9 +121,14 @@ class Campaign:
     ) -> None:
         """Draw a section of the file, in its order."""
         for rule in rules:
-            for key, joint in rule.keys(self.joints(keys) if "*" in rule.key else {}):
-                local = {} if joint is None else joint_figures(self.joints(keys)[joint], joint, names)
-                names[key] = keys[key] = rule.distribution.draw(random, {**names, **local})
+            joints = self.joints(keys) if "*" in rule.key else {}
+            drawn = limits_of(joints) | dict(
+                each for key, value in keys.items() for each in inside(value, key)
+            )
+            for key, joint in rule.keys(joints):
+                local = {} if joint is None else joint_figures(joint, drawn)
+                keys[key] = rule.distribution.draw(random, {**names, **local})
+                names.update(inside(keys[key], key))
 
     def overrides(self, draw: Draw) -> dict[str, Any]:
         """The scenario's keys of a run."""
@@ -151,15 +157,27 @@ class Campaign:
         return found
 
 
-def joint_figures(joint: Mapping[str, Any], name: str, names: Mapping[str, Any]) -> dict[str, float]:
+def inside(value: Any, name: str) -> Iterator[tuple[str, Any]]:
+    """A value and those in it, by the names that formulas have for them."""
+    yield name, value
+    if isinstance(value, dict):
+        for key, each in value.items():
+            yield from inside(each, f"{name}.{key}")
+
+
+def joint_figures(name: str, names: Mapping[str, Any]) -> dict[str, float]:
     """What formulas know of the joint that a pattern stands for: its limits as drawn, if they were."""
-    own = {
-        "lower": -math.inf if joint["lower"] is None else joint["lower"],
-        "upper": math.inf if joint["upper"] is None else joint["upper"],
-        "buffer": joint["buffer"],
-        "bound": math.inf if joint["bound"] is None else joint["bound"],
+    return {what: names[f"limits.joints.{name}.{what}"] for what in ("lower", "upper", "buffer", "bound")}
+
+
+def limits_of(joints: Mapping[str, Any]) -> dict[str, float]:
+    """The limits of joints under the names that formulas have for them."""
+    absent = {"lower": -math.inf, "upper": math.inf, "buffer": math.inf, "bound": math.inf}
+    return {
+        f"limits.joints.{name}.{what}": otherwise if joint[what] is None else joint[what]
+        for name, joint in joints.items()
+        for what, otherwise in absent.items()
     }
-    return {what: names.get(f"limits.joints.{name}.{what}", value) for what, value in own.items()}
 
 
 def as_items(keys: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
@@ -176,9 +194,10 @@ def described_joints(scenario: str, overrides: tuple[tuple[str, str], ...]) -> d
 
 @lru_cache(maxsize=16)
 def base_figures(scenario: str, overrides: tuple[tuple[str, str], ...]) -> dict[str, float]:
-    """The cycle and the duration of a scenario."""
+    """What formulas know of a scenario: its cycle, its duration and its joints' limits."""
     described = _core.load_scenario(scenario, dict(overrides)).describe()
-    return {"dt": described["dt"], "duration": described["duration"]}
+    own = {"dt": described["dt"], "duration": described["duration"]}
+    return own | limits_of(described_joints(scenario, overrides))
 
 
 def load_campaign(file: str | os.PathLike[str], runs: int | None = None) -> Campaign:
@@ -203,11 +222,12 @@ def read_campaign(top: Entry) -> Campaign:
     if not scenario.is_file():
         entries["scenario"].fail(f"no such file: {scenario}")
     fixed = entries["set"].plain() if read_map(entries, "set") else {}
-    let = read_rules(read_map(entries, "let"), {})
-    known = {rule.key: rule.distribution for rule in let}
+    context = Context(os.path.abspath(scenario), fixed, {})
+    let = read_rules(read_map(entries, "let"), context)
     refuse_patterns(let)
+    context = replace(context, known={rule.key: rule.distribution for rule in let})
     variants = {
-        name: read_rules(each.entries(), known) for name, each in read_map(entries, "variants").items()
+        name: read_rules(each.entries(), context) for name, each in read_map(entries, "variants").items()
     } or {ALONE: ()}
     chunk = entries["chunk"].whole(1) if "chunk" in entries else CHUNK
     return Campaign(
@@ -216,10 +236,10 @@ def read_campaign(top: Entry) -> Campaign:
         description=entries["description"].text().strip() if "description" in entries else "",
         seed=entries["seed"].whole(0),
         runs=entries["runs"].whole(1),
-        scenario=os.path.abspath(scenario),
+        scenario=context.scenario,
         fixed=fixed,
         let=let,
-        sample=read_rules(read_map(entries, "sample"), known),
+        sample=read_rules(read_map(entries, "sample"), context),
         variants=variants,
         must_keep_limits=read_names(entries, "must_keep_limits", variants),
         refine=entries["refine"].whole(2) if "refine" in entries else None,
@@ -233,14 +253,13 @@ def read_map(entries: Mapping[str, Entry], key: str) -> dict[str, Entry]:
     return entries[key].entries() if key in entries else {}
 
 
-def read_rules(section: Mapping[str, Entry], known: Mapping[str, Distribution]) -> tuple[Rule, ...]:
+def read_rules(section: Mapping[str, Entry], context: Context) -> tuple[Rule, ...]:
     """What a section draws; a formula may name what stands before it there."""
-    seen = dict(known)
-    rules = []
+    rules: list[Rule] = []
     for key, entry in section.items():
-        distribution = distributions.read(entry, seen)
+        known = {**context.known, **{rule.key: rule.distribution for rule in rules}}
+        distribution = distributions.read(entry, replace(context, known=known))
         rules.append(Rule(key, distribution, entry.place))
-        seen[key] = distribution
     return tuple(rules)
 
 

@@ -19,6 +19,7 @@ from typing import Any, Literal, Protocol
 import numpy as np
 
 from tope.expression import Expression, Names
+from tope.pose import pose
 from tope.yaml_entry import Entry, hint
 
 Kind = Literal["number", "text"]
@@ -173,7 +174,7 @@ class Value:
     """What a formula gives."""
 
     formula: Expression
-    of: Distribution | None  # what it names, if it is a single name
+    of: Leaves | None  # of what it names, if it is a single name
 
     def draw(self, random: np.random.Generator, names: Names) -> Any:
         """The value."""
@@ -181,7 +182,50 @@ class Value:
 
     def leaves(self) -> Leaves:
         """As what it names; a number otherwise."""
-        return {"": "number"} if self.of is None else self.of.leaves()
+        return {"": "number"} if self.of is None else self.of
+
+
+@dataclass(frozen=True)
+class PoseOf:
+    """Where a frame is at joint positions that are drawn, the others being at 0."""
+
+    scenario: str
+    fixed: Mapping[str, Any]
+    frame: str
+    joints: MapOf
+
+    def draw(self, random: np.random.Generator, names: Names) -> Any:
+        """Position and quaternion."""
+        return pose(self.scenario, self.fixed, self.frame, self.joints.draw(random, names))
+
+    def leaves(self) -> Leaves:
+        """Three and four numbers."""
+        sizes = {"position": 3, "quaternion": 4}
+        return {f"{what}.{i}": "number" for what, size in sizes.items() for i in range(size)}
+
+
+@dataclass(frozen=True)
+class Context:
+    """What a distribution may refer to."""
+
+    scenario: str
+    fixed: Mapping[str, Any]
+    known: Mapping[str, Distribution]
+
+    def named(self, name: str) -> Leaves | None:
+        """The single values in what a formula calls so; None if that is unknown or a number."""
+        for key, each in self.known.items():
+            if name == key:
+                return each.leaves()
+            if name.startswith(f"{key}."):
+                within = f"{name.removeprefix(f'{key}.')}."
+                found = {
+                    f"{path}.".removeprefix(within)[:-1]: kind
+                    for path, kind in each.leaves().items()
+                    if f"{path}.".startswith(within)
+                }
+                return found or None
+        return None
 
 
 def below(entries: Mapping[str, Distribution]) -> Leaves:
@@ -206,20 +250,20 @@ def product(a: Any, b: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
     return np.array([scalar, *vector])
 
 
-def read(entry: Entry, known: Mapping[str, Distribution]) -> Distribution:
-    """A distribution from a file; `known` are those that a formula may name."""
+def read(entry: Entry, context: Context) -> Distribution:
+    """A distribution from a file."""
     if entry.is_list:
-        return ListOf(tuple(read(each, known) for each in entry.items()))
+        return ListOf(tuple(read(each, context) for each in entry.items()))
     if not entry.is_map:
         return Constant(entry.plain())
     entries = entry.entries()
     if len(entries) == 1:
         (name, argument), *_ = entries.items()
         if name in READERS:
-            return READERS[name](argument, known)
+            return READERS[name](argument, context)
         if hint(name, READERS).startswith("; did"):
             argument.fail(f"unknown distribution{hint(name, READERS)}")
-    return MapOf({key: read(each, known) for key, each in entries.items()})
+    return MapOf({key: read(each, context) for key, each in entries.items()})
 
 
 def read_ends(entry: Entry) -> tuple[Expression, Expression]:
@@ -239,15 +283,15 @@ def read_uniform(entry: Entry, logarithmic: bool) -> Distribution:
     return uniform
 
 
-def read_choice(entry: Entry, known: Mapping[str, Distribution]) -> Distribution:
+def read_choice(entry: Entry, context: Context) -> Distribution:
     """At least one option."""
-    options = tuple(read(each, known) for each in entry.items())
+    options = tuple(read(each, context) for each in entry.items())
     if not options:
         entry.fail("expected at least one value to choose from")
     return Choice(options)
 
 
-def read_rotation(entry: Entry, known: Mapping[str, Distribution]) -> Distribution:
+def read_rotation(entry: Entry, context: Context) -> Distribution:
     """Uniform, or near another."""
     if not entry.is_map:
         if entry.plain() != "uniform":
@@ -272,17 +316,31 @@ def is_quaternion(value: Any) -> bool:
     return abs(math.hypot(*value) - 1.0) < 1e-2
 
 
-def read_value(entry: Entry, known: Mapping[str, Distribution]) -> Distribution:
+def read_value(entry: Entry, context: Context) -> Distribution:
     """A formula."""
     formula = Expression.read(entry)
-    return Value(formula, known.get(formula.text.strip()))
+    return Value(formula, context.named(formula.text.strip()))
 
 
-READERS: dict[str, Callable[[Entry, Mapping[str, Distribution]], Distribution]] = {
-    "uniform": lambda entry, known: read_uniform(entry, logarithmic=False),
-    "log_uniform": lambda entry, known: read_uniform(entry, logarithmic=True),
-    "integer": lambda entry, known: Integer(*read_ends(entry)),
+def read_pose(entry: Entry, context: Context) -> Distribution:
+    """A frame and joints."""
+    entries = entry.entries()
+    for key, each in entries.items():
+        if key not in ("frame", "joints"):
+            each.fail(f"unknown key{hint(key, ('frame', 'joints'))}")
+    for key in ("frame", "joints"):
+        if key not in entries:
+            entry.fail(f"'{key}' is missing")
+    joints = MapOf({name: read(each, context) for name, each in entries["joints"].entries().items()})
+    return PoseOf(context.scenario, context.fixed, entries["frame"].text(), joints)
+
+
+READERS: dict[str, Callable[[Entry, Context], Distribution]] = {
+    "uniform": lambda entry, context: read_uniform(entry, logarithmic=False),
+    "log_uniform": lambda entry, context: read_uniform(entry, logarithmic=True),
+    "integer": lambda entry, context: Integer(*read_ends(entry)),
     "choice": read_choice,
     "rotation": read_rotation,
     "value": read_value,
+    "pose": read_pose,
 }
