@@ -10,6 +10,7 @@ A campaign file (YAML) has
                         joint's lower, upper, buffer and bound, and elsewhere all keys drawn or set before
     variants            name -> keys; every draw is run once in each
     must_keep_limits    variants that a sweep fails for if they cross a limit
+    tables              which figures are told: limits, distances, errors, jumps; all by default
     refine              also run at this many times shorter a cycle, to tell jumps from slopes
     chunk               runs that are done and kept as one
 """
@@ -19,7 +20,7 @@ from __future__ import annotations
 import hashlib
 import math
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from functools import lru_cache
@@ -35,8 +36,9 @@ from tope.yaml_entry import Entry, Place
 
 KNOWN = (
     *("name", "description", "seed", "runs", "scenario", "set", "let", "sample", "variants"),
-    *("must_keep_limits", "refine", "chunk"),
+    *("must_keep_limits", "tables", "refine", "chunk"),
 )
+TABLES = ("limits", "distances", "errors", "jumps")
 ALONE = "all"  # the variant of a campaign that names none
 CHUNK = 100
 PROBES = 20  # draws that are read at once, to tell a mistake from a draw out of range
@@ -88,6 +90,7 @@ class Campaign:
     sample: tuple[Rule, ...]
     variants: dict[str, tuple[Rule, ...]]
     must_keep_limits: tuple[str, ...]
+    tables: tuple[str, ...]
     refine: int | None
     chunk: int
     content: dict[str, Any]  # all that the results depend on, but for the number of runs
@@ -242,6 +245,7 @@ def read_campaign(top: Entry) -> Campaign:
         sample=read_rules(read_map(entries, "sample"), context),
         variants=variants,
         must_keep_limits=read_names(entries, "must_keep_limits", variants),
+        tables=read_names(entries, "tables", TABLES) or TABLES,
         refine=entries["refine"].whole(2) if "refine" in entries else None,
         chunk=chunk,
         content=content_of(entries, scenario) | {"chunk": chunk},
@@ -270,18 +274,20 @@ def refuse_patterns(let: tuple[Rule, ...]) -> None:
             raise rule.place.error("expected a name of letters, digits and _")
 
 
-def read_names(entries: Mapping[str, Entry], key: str, known: Mapping[str, Any]) -> tuple[str, ...]:
-    """A list of variants."""
+def read_names(entries: Mapping[str, Entry], key: str, known: Collection[str]) -> tuple[str, ...]:
+    """A list of names; none if it is absent."""
     if key not in entries:
         return ()
     for each in entries[key].items():
         if each.text() not in known:
-            each.fail(f"no variant is called '{each.text()}'{yaml_entry.hint(each.text(), known)}")
+            each.fail(f"nothing is called '{each.text()}'{yaml_entry.hint(each.text(), known)}")
     return tuple(each.text() for each in entries[key].items())
 
 
 def probe(campaign: Campaign) -> None:
     """Raise ConfigError if none of a variant's first runs can be read: that is a mistake, not bad luck."""
+    if (wrong := blamed(campaign, campaign.fixed, next(iter(campaign.variants)))) is not None:
+        raise wrong
     count = len(campaign.variants)
     for number in range(count):
         errors = []
@@ -301,13 +307,17 @@ def mistake(campaign: Campaign, run: int) -> _core.ConfigError | None:
         draw = campaign.draw(run)
     except _core.ConfigError as error:
         return error
-    keys = campaign.overrides(draw)
+    return blamed(campaign, campaign.overrides(draw), draw.variant)
+
+
+def blamed(campaign: Campaign, keys: Mapping[str, Any], variant: str) -> _core.ConfigError | None:
+    """The error of reading the scenario with these keys, at the key without which it can be read."""
     refused = refusal(campaign, keys)
     if refused is None:
         return None
     for key in keys:
         if refusal(campaign, {other: value for other, value in keys.items() if other != key}) is None:
-            return place_of(campaign, key, draw.variant).error(f"{told(keys[key])}{refused}")
+            return place_of(campaign, key, variant).error(f"{told(keys[key])}{refused}")
     return Place(campaign.file, 1, "scenario").error(str(refused))
 
 
@@ -327,11 +337,12 @@ def refusal(campaign: Campaign, keys: Mapping[str, Any]) -> _core.ConfigError | 
 
 def place_of(campaign: Campaign, key: str, variant: str) -> Place:
     """Where a key was given."""
+    if key in campaign.fixed:
+        return yaml_entry.read(campaign.file).entries()["set"].entries()[key].place
     for rule in (*campaign.variants[variant], *campaign.sample):
         if any(key == each for each, _ in rule.keys(campaign.joints({}))):
             return rule.place
-    top = yaml_entry.read(campaign.file).entries()
-    return top["set"].entries()[key].place
+    raise AssertionError(key)
 
 
 def content_of(entries: Mapping[str, Entry], scenario: Path) -> dict[str, Any]:

@@ -91,7 +91,8 @@ def violation(table: pa.Table) -> Array:
 
 def all_figures(results: Results) -> list[Figures]:
     """Every table."""
-    tables = [limits(results), distances(results), errors(results), jumps(results)]
+    makers = {"limits": limits, "distances": distances, "errors": errors, "jumps": jumps}
+    tables = [makers[name](results) for name in results.campaign.tables]
     return [each for each in tables if each.rows]
 
 
@@ -107,7 +108,10 @@ def limits(results: Results) -> Figures:
         "crossed a limit",
         "least distance kept",
     )
-    note = "Distances are in mm or mrad, of the joint that came nearest to one of its limits."
+    note = (
+        "Counts of runs; distances in mm or mrad, of the joint that came nearest to one of its limits. "
+        "Clipped: the limits alone asked for more than a bound. Cut off: the solver stopped before it was done."
+    )
     return Figures("Limits", (*header, "clipped", "cut off"), rows, note)
 
 
@@ -135,7 +139,7 @@ def distances(results: Results) -> Figures:
         for variant in results.campaign.variants
         if len(results.of(variant))
     ]
-    note = "So many of the runs kept no more than this distance; negative: crossed by."
+    note = "In mm or mrad. So many of the runs kept no more than this; negative: crossed by."
     return Figures("Distance kept from the nearest limit", header, rows, note)
 
 

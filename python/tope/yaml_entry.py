@@ -35,10 +35,10 @@ class Place:
 class Entry:
     """A value of a YAML file, with its place."""
 
-    def __init__(self, node: yaml.Node, file: str, key: str) -> None:
-        """`key` is the dotted path to the value."""
+    def __init__(self, node: yaml.Node, file: str, key: str, name: yaml.Node | None = None) -> None:
+        """`key` is the dotted path to the value, `name` its last part as it stands in the file."""
         self.node = node
-        self.place = Place(file, node.start_mark.line + 1, key)
+        self.place = Place(file, (name or node).start_mark.line + 1, key)
 
     def fail(self, message: str) -> NoReturn:
         """Raise ConfigError that names the place."""
@@ -54,9 +54,9 @@ class Entry:
         """Whether it has items."""
         return isinstance(self.node, yaml.SequenceNode)
 
-    def child(self, node: yaml.Node, key: str) -> Entry:
+    def child(self, node: yaml.Node, key: str, name: yaml.Node | None = None) -> Entry:
         """A value inside this one."""
-        return Entry(node, self.place.file, f"{self.place.key}.{key}".lstrip("."))
+        return Entry(node, self.place.file, f"{self.place.key}.{key}".lstrip("."), name)
 
     def entries(self) -> dict[str, Entry]:
         """The values of a map by their keys."""
@@ -67,7 +67,7 @@ class Entry:
             key = str(name.value)
             if key in found:
                 self.child(name, key).fail("stands there twice")
-            found[key] = self.child(node, key)
+            found[key] = self.child(node, key, name)
         return found
 
     def items(self) -> list[Entry]:
