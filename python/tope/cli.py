@@ -228,7 +228,8 @@ def sweep(
     console = output()
     for each in figures.all_figures(results):
         print_figures(console, each)
-    console.print(Text(figures.verdict(results)))
+    if verdict := figures.verdict(results):
+        console.print(Text(verdict.replace("`", "")))
     console.print(pairs([written(done.out, "summary.html"), written(done.out, "runs.parquet")]))
     for file in markdown or ():
         tables = figures.markdown(results, tool.shown(campaign, runs))

@@ -110,7 +110,7 @@ def limits(results: Results) -> Figures:
     )
     note = (
         "Counts of runs; distances in mm or mrad, of the joint that came nearest to one of its limits. "
-        "Clipped: the limits alone asked for more than a bound. Cut off: the solver stopped before it was done."
+        "Clipped: the limits alone asked for more than a bound. Cut off: the solver stopped early."
     )
     return Figures("Limits", (*header, "clipped", "cut off"), rows, note)
 
@@ -253,7 +253,7 @@ def worst(results: Results, variant: str, name: str, told: Any, command: str) ->
 def told_distance(row: Mapping[str, Any], value: float) -> str:
     """Which joint came how near."""
     words = "kept" if value <= 0 else "crossed by"
-    return f"{words} {distance(abs(value))}, {row['nearest_joint']}"
+    return f"{words} {distance(abs(value))} mm or mrad, {row['nearest_joint']}"
 
 
 def told_jump(row: Mapping[str, Any], value: float) -> str:

@@ -28,7 +28,7 @@ def write_sweep_summary(campaign: Campaign, table: pa.Table, path: Path, command
         campaign=campaign,
         command=command,
         total=count(len(table)),
-        verdict=verdict(results),
+        verdict=verdict(results).replace("`", ""),
         figures=all_figures(results),
         plots={title: Markup(svg) for title, svg in histograms(results).items()},
         worst=worst_cases(results, one_run),

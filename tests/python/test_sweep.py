@@ -355,7 +355,7 @@ def test_a_crossed_limit_fails_the_sweep_if_it_must_not_be(tope, tmp_path):
     file = campaign_file(tmp_path, text, runs=5)
     code, out, _ = tope("sweep", file, "--workers", 0)
     assert code == 1
-    assert re.search(r"[1-5] of 10 runs of `unilateral`, `chain` crossed a limit", out)
+    assert re.search(r"[1-5] of 10 runs of unilateral, chain crossed a limit", out)
 
 
 def test_tables_go_between_the_marks_of_a_file(tope, tmp_path):
