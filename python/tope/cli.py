@@ -212,6 +212,8 @@ def sweep(
     where it was. The same seed gives the same results on any number of workers. Fails if a variant that must
     keep limits crosses one.
     """
+    if scheduler is not None and workers is not None:
+        raise typer.BadParameter("a cluster has its own workers", param_hint="--workers")
     tool = extras.load("tope.sweep", "sweeping", "sweep")
     if replay is not None:
         replay_run(tool, campaign, replay, out)

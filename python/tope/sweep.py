@@ -26,6 +26,7 @@ AHEAD = (
     4  # chunks a thread of a worker has waiting, so that it never idles and none waits long for its memory
 )
 CONNECT = "10 s"
+JOIN = 60.0  # s; that the first worker may take
 
 
 @dataclass(frozen=True)
@@ -107,11 +108,7 @@ def chunk_source(
 def connected(workers: int | None, scheduler: str | None) -> Iterator[Client]:
     """A cluster of local processes, or the one at an address."""
     if scheduler is not None:
-        try:
-            client = Client(scheduler, timeout=CONNECT, set_as_default=False)
-        except (OSError, TimeoutError, ValueError) as error:
-            raise _core.Error(f"--scheduler {scheduler}: no Dask scheduler answers there: {error}") from error
-        with client:
+        with answering(scheduler) as client:
             yield client
         return
     count = len(os.sched_getaffinity(0)) if workers is None else workers
@@ -125,6 +122,23 @@ def connected(workers: int | None, scheduler: str | None) -> Iterator[Client]:
         ) as cluster,
         Client(cluster, set_as_default=False) as client,
     ):
+        yield client
+
+
+@contextmanager
+def answering(scheduler: str) -> Iterator[Client]:
+    """The cluster at an address, once it has a worker."""
+    try:
+        client = Client(scheduler, timeout=CONNECT, set_as_default=False)
+    except (OSError, TimeoutError, ValueError) as error:
+        raise _core.Error(f"--scheduler {scheduler}: no Dask scheduler answers there: {error}") from error
+    with client:
+        try:
+            client.wait_for_workers(1, timeout=JOIN)
+        except TimeoutError as error:
+            raise _core.Error(
+                f"--scheduler {scheduler}: it has no worker, and none came in {JOIN:g} s"
+            ) from error
         yield client
 
 

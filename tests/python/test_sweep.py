@@ -280,6 +280,12 @@ def test_a_scheduler_that_does_not_answer_is_one_line(tope, tmp_path, monkeypatc
     assert "tcp://127.0.0.1:9: no Dask scheduler answers there" in err
 
 
+def test_a_cluster_has_its_own_workers(tope, tmp_path):
+    code, _, err = tope("sweep", campaign_file(tmp_path), "--scheduler", "tcp://127.0.0.1:9", "--workers", 2)
+    assert code == 2
+    assert "a cluster has its own workers" in err
+
+
 def test_a_missing_package_is_named_with_what_installs_it(tope, tmp_path, monkeypatch):
     monkeypatch.delitem(sys.modules, "tope.sweep")
     monkeypatch.setitem(sys.modules, "distributed", None)
@@ -454,7 +460,14 @@ def test_a_sweep_killed_half_way_and_resumed_gives_the_same_bytes(slow, tmp_path
     assert (out / "runs.parquet").read_bytes() == whole
 
 
-def test_a_cluster_over_tcp_gives_the_bytes_of_one_process(tmp_path, quick):
+def scheduler_of(file):
+    """The address that a scheduler wrote to a file."""
+    address = json.loads(file.read_text())["address"]
+    assert address.startswith("tcp://127.0.0.1:")
+    return address
+
+
+def test_a_cluster_over_tcp_gives_the_bytes_of_one_process(tmp_path, quick, monkeypatch):
     address = tmp_path / "scheduler.json"
     shared = ["--scheduler-file", str(address), "--no-dashboard"]
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": tmp_path}
@@ -462,8 +475,10 @@ def test_a_cluster_over_tcp_gives_the_bytes_of_one_process(tmp_path, quick):
     worker = [*DASK, "worker", "--host", "127.0.0.1", "--nthreads", "1", *shared]
     with started(scheduler, **quiet):
         wait_until(address.exists, "a scheduler")
+        monkeypatch.setattr("tope.sweep.JOIN", 0.5)
+        with pytest.raises(_core.Error, match="it has no worker, and none came"):
+            sweep(campaign_file(tmp_path), out=tmp_path / "out", scheduler=scheduler_of(address))
+        monkeypatch.undo()
         with started(worker, **quiet), started(worker, **quiet):
-            url = json.loads(address.read_text())["address"]
-            assert url.startswith("tcp://127.0.0.1:")
-            done = sweep(campaign_file(tmp_path), out=tmp_path / "out", scheduler=url)
+            done = sweep(campaign_file(tmp_path), out=tmp_path / "out", scheduler=scheduler_of(address))
     assert (done.out / "runs.parquet").read_bytes() == (quick.out / "runs.parquet").read_bytes()
