@@ -15,7 +15,8 @@ import pyarrow as pa
 from distributed import Client, KilledWorker, LocalCluster, as_completed
 
 from tope import _core
-from tope.campaign import Campaign, load_campaign
+from tope.campaign import Campaign
+from tope.campaign_file import load_campaign
 from tope.runs import Run
 from tope.simulation import Progress, simulate
 from tope.sweep_folder import SweepFolder

@@ -13,7 +13,8 @@ import pyarrow as pa
 from pyarrow import parquet
 
 from tope import _core
-from tope.campaign import Campaign, library
+from tope.campaign import Campaign
+from tope.campaign_file import build
 from tope.runs import Summary, finite
 from tope.simulation import as_text
 from tope.words import worst
@@ -58,7 +59,7 @@ def same_files(campaign: Campaign) -> None:
             f"{campaign.scenario}: not on the worker {socket.gethostname()}: "
             "workers need the same files at the same place"
         )
-    if library() != campaign.content["the tope library"]:
+    if build() != campaign.content["the build of tope"]:
         raise _core.Error(f"the worker {socket.gethostname()} has another build of tope than this machine")
 
 

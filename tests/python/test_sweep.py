@@ -23,7 +23,7 @@ from kinematics import frames
 from pyarrow import parquet
 
 from tope import _core
-from tope.campaign import load_campaign
+from tope.campaign_file import load_campaign
 from tope.cli import main
 from tope.sweep import replay, sweep
 from tope.sweep_rows import metrics
@@ -335,6 +335,35 @@ def test_a_refused_scenario_is_a_row_with_its_message(tmp_path):
     page = (tmp_path / "out/summary.html").read_text()
     assert "Runs without result" in page
     assert "limits are not safe" in page
+
+
+def test_robots_modes_and_plants_can_be_drawn_too(tmp_path):
+    text = f"""\
+name: robots
+seed: 1
+runs: 10
+chunk: 3
+scenario: {SCENARIOS}/youbot_velocity.yaml
+set: {{duration: 0.02, initial: {{}}, limits.joints: {{}}, limits.potential_field: {{}}}}
+sample:
+  robot:
+    choice:
+      - {{urdf: ../robots/youbot/youbot.urdf, config: ../robots/youbot/youbot.yaml}}
+      - {{urdf: ../bench/robots/youbot_blocked.urdf}}
+  initial.*: {{uniform: ["max(lower, -0.3) + buffer", "min(upper, 1) - buffer"]}}
+variants:
+  velocity: {{mode: velocity, plant: {{type: kinematic}}}}
+  torque: {{mode: torque, plant: {{type: rigid_body}}}}
+  mujoco: {{mode: torque, plant: {{type: mujoco, model: ../robots/youbot/youbot_rollers.xml}}}}
+"""
+    campaign = load_campaign(campaign_file(tmp_path, text))
+    assert "file ../bench/robots/youbot_blocked.urdf" in campaign.content
+    rows = sweep(campaign.file, out=tmp_path / "out", workers=0).table.to_pylist()
+    for row in rows:
+        blocked = row["set.robot.config"] is None
+        assert row["outcome"] == ("refused" if blocked and row["variant"] == "mujoco" else "finished")
+        assert (row["set.initial.arm1"] is None) != blocked
+        assert (row["set.initial.arm_joint_1"] is None) == blocked
 
 
 def test_a_finer_cycle_tells_jumps_from_slopes(tmp_path):
