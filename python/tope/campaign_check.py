@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from fnmatch import fnmatchcase
 from typing import Any
 
 from tope import _core, yaml_entry
@@ -20,7 +21,7 @@ def probe(campaign: Campaign) -> None:
     count = len(campaign.variants)
     for number in range(count):
         errors = []
-        for sample in range(min(PROBES, campaign.runs)):
+        for sample in range(PROBES):
             error = mistake(campaign, sample * count + number)
             if error is None:
                 break
@@ -69,6 +70,6 @@ def place_of(campaign: Campaign, key: str, variant: str) -> Place:
     if key in campaign.fixed:
         return yaml_entry.read(campaign.file).entries()["set"].entries()[key].place
     for rule in (*campaign.variants[variant], *campaign.sample):
-        if any(key == each for each, _ in rule.keys(campaign.joints({}))):
+        if fnmatchcase(key, rule.key):
             return rule.place
     raise AssertionError(key)
