@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import socket
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from functools import lru_cache
@@ -37,6 +38,7 @@ KNOWN = (
 TABLES = ("limits", "distances", "errors", "jumps")
 ALONE = "all"  # the variant of a campaign that names none
 CHUNK = 100
+FILE, BUILD = "file ", "the build of tope"  # what content is called
 LONGEST_PATH = 256
 DECIDING = ("campaign", "distributions", "expression", "pose", "sweep_rows")  # modules that rows depend on
 
@@ -131,8 +133,21 @@ def content_of(entries: Mapping[str, Entry], scenario: Path) -> dict[str, Any]:
         content[f"order of {section}"] = list(read_map(entries, section))
     sections = [entries[key] for key in ("set", "sample", "variants") if key in entries]
     for file in files_named(scenario, [yaml_entry.read(scenario), *sections]):
-        content[f"file {os.path.relpath(file, scenario.parent)}"] = digest(file)
-    return content | {"the build of tope": build()}
+        content[f"{FILE}{os.path.relpath(file, scenario.parent)}"] = digest(file)
+    return content | {BUILD: build()}
+
+
+def check_worker(campaign: Campaign) -> None:
+    """Raise Error if this machine would compute something else than the one that read the campaign."""
+    here = f"the worker {socket.gethostname()}"
+    for key, expected in campaign.content.items():
+        file = Path(campaign.scenario).parent / key.removeprefix(FILE)
+        if key.startswith(FILE) and (not file.is_file() or digest(file) != expected):
+            raise _core.Error(
+                f"{file}: missing or different on {here}: the same files must be at the same place"
+            )
+    if build() != campaign.content[BUILD]:
+        raise _core.Error(f"{here} has another build of tope than this machine")
 
 
 def files_named(scenario: Path, entries: Collection[Entry]) -> Iterator[Path]:

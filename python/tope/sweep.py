@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
-import dask
 import pyarrow as pa
 from distributed import Client, KilledWorker, LocalCluster, as_completed
 
@@ -98,10 +97,7 @@ def chunk_source(
         yield (run_chunk(campaign, *each) for each in missing)
         return
     logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what matters of it is told below
-    with (
-        dask.config.set({"distributed.admin.log-format": "%(message)s"}),
-        connected(workers, scheduler) as client,
-    ):
+    with connected(workers, scheduler) as client:
         yield computed(client, campaign, missing)
 
 

@@ -14,7 +14,7 @@ from pyarrow import parquet
 
 from tope import _core
 from tope.campaign import Campaign
-from tope.campaign_file import build
+from tope.campaign_file import check_worker
 from tope.runs import Summary, finite
 from tope.simulation import as_text
 from tope.words import worst
@@ -45,22 +45,11 @@ class Chunk(NamedTuple):
 
 def run_chunk(campaign: Campaign, first: int, last: int) -> Chunk:
     """Run from `first` up to and including `last`, wherever the same files are at the same place."""
-    same_files(campaign)
+    check_worker(campaign)
     begin = time.perf_counter()
     rows = [run_row(campaign, run) for run in range(first, last + 1)]
     written = as_parquet(table_of(campaign, rows))
     return Chunk(first, last, written, time.perf_counter() - begin, socket.gethostname())
-
-
-def same_files(campaign: Campaign) -> None:
-    """Raise Error if a worker would compute something else than was asked for."""
-    if not Path(campaign.scenario).is_file():
-        raise _core.Error(
-            f"{campaign.scenario}: not on the worker {socket.gethostname()}: "
-            "workers need the same files at the same place"
-        )
-    if build() != campaign.content["the build of tope"]:
-        raise _core.Error(f"the worker {socket.gethostname()} has another build of tope than this machine")
 
 
 def run_row(campaign: Campaign, run: int) -> Row:

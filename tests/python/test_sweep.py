@@ -23,10 +23,10 @@ from kinematics import frames
 from pyarrow import parquet
 
 from tope import _core
-from tope.campaign_file import load_campaign
+from tope.campaign_file import check_worker, load_campaign
 from tope.cli import main
 from tope.sweep import replay, sweep
-from tope.sweep_rows import metrics
+from tope.sweep_rows import metrics, run_chunk
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 CAMPAIGNS = Path(__file__).parents[2] / "campaigns"
@@ -411,6 +411,22 @@ def test_tables_go_between_the_marks_of_a_file(tope, tmp_path):
 
 
 # Workers and kills
+
+
+def test_a_worker_with_other_files_or_another_build_ends_the_sweep(tmp_path, monkeypatch):
+    scenario = tmp_path / "scenario.yaml"
+    scenario.write_text(
+        (SCENARIOS / "youbot_velocity.yaml").read_text().replace("../robots", f"{SCENARIOS}/../robots")
+    )
+    campaign = load_campaign(campaign_file(tmp_path, scenario=scenario))
+    check_worker(campaign)
+    with monkeypatch.context() as patched:
+        patched.setattr("tope.campaign_file.build", lambda: "another")
+        with pytest.raises(_core.Error, match="has another build of tope"):
+            run_chunk(campaign, 0, 1)
+    scenario.write_text(scenario.read_text() + "# changed")
+    with pytest.raises(_core.Error, match=r"scenario\.yaml: missing or different on the worker"):
+        run_chunk(campaign, 0, 1)
 
 
 def test_local_processes_give_the_bytes_of_one_process(tmp_path, quick):
