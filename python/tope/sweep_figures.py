@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from tope.words import percent
 
 Array = NDArray[np.float64]
 
+OUTCOMES = ("finished", "refused", "failed")
 QUANTILES = (0.0, 0.001, 0.01, 0.1, 0.5, 0.9)  # of the distance kept
 CONTINUOUS = 8.0  # of the largest jumps at dt and dt / 10: from here on a command counts as continuous
 WORST = 5  # listed of each kind and variant
@@ -56,8 +58,17 @@ class Results:
 
     def where(self, variant: str, outcome: str) -> pa.Table:
         """The runs of a variant with one outcome."""
-        here = self.column("variant") == variant
-        return self.table.filter(pa.array(here & (self.column("outcome") == outcome)))
+        return self.split[variant, outcome]
+
+    @cached_property
+    def split(self) -> dict[tuple[str, str], pa.Table]:
+        """The runs by variant and outcome."""
+        variants, outcomes = self.column("variant"), self.column("outcome")
+        return {
+            (variant, outcome): self.table.filter(pa.array((variants == variant) & (outcomes == outcome)))
+            for variant in self.campaign.variants
+            for outcome in OUTCOMES
+        }
 
     def column(self, name: str) -> NDArray[Any]:
         """A column of all runs."""
