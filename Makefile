@@ -89,18 +89,18 @@ test-python: viewer-tests
 examples:
 	@for example in examples/*.py; do echo $$example; $(BIN)/python $$example || exit 1; done
 
-# Random goals, many out of reach, random runs and wrong models: figures of the README. Minutes each.
-.PHONY: campaign-goals campaign-limits campaign-torque-goals campaign-torque-limits campaign-robustness
+# Random goals, many out of reach: figures of the README. Minutes each.
+.PHONY: campaign-goals campaign-torque-goals
 campaign-goals: build
 	$(BIN)/python bench/goals.py
-campaign-limits: build
-	$(BIN)/python bench/random_limits.py
 campaign-torque-goals: build
 	$(BIN)/python bench/torque_goals.py
-campaign-torque-limits: build
-	$(BIN)/python bench/random_limits.py --mode torque
-campaign-robustness: build
-	$(BIN)/python bench/robustness.py
+
+# The campaigns of campaigns/, and the tables of docs/guarantees.md: make campaign-robustness RUNS=50 for fewer draws.
+CAMPAIGNS := $(patsubst campaigns/%.yaml,campaign-%,$(wildcard campaigns/*.yaml))
+.PHONY: $(CAMPAIGNS)
+$(CAMPAIGNS): campaign-%: build
+	$(BIN)/tope sweep campaigns/$*.yaml $(if $(RUNS),--runs $(RUNS)) --markdown docs/guarantees.md
 
 # The libraries that `tope bench --peers` measures tope against, each in an environment of its own: ten minutes and more,
 # as tsid is compiled; PEERS=placo for some. Then the tables of README.md and docs/peers.md: five minutes.

@@ -1,4 +1,4 @@
-"""The command line: tope run, compare, check, play, export and bench."""
+"""The command line: tope run, compare, check, play, sweep, export and bench."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from types import ModuleType
 from typing import Annotated, Any
 
 import typer
@@ -180,6 +181,66 @@ def play(
 
 
 @app.command()
+def sweep(
+    campaign: Annotated[Path, typer.Argument(metavar="CAMPAIGN", help="The campaign file (YAML).")],
+    *,
+    runs: Annotated[
+        int | None, typer.Option("--runs", min=1, help="So many draws instead of the campaign's number.")
+    ] = None,
+    workers: Annotated[
+        int | None,
+        typer.Option(
+            "--workers", min=0, help="Local processes; one a core by default, 0: this process alone."
+        ),
+    ] = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option("--scheduler", metavar="ADDRESS", help="Of a Dask cluster, as in tcp://host:8786."),
+    ] = None,
+    replay: Annotated[
+        int | None, typer.Option("--replay", metavar="RUN", help="Only this run, as `tope run` shows it.")
+    ] = None,
+    markdown: Annotated[
+        list[Path] | None,
+        typer.Option("--markdown", metavar="FILE", help="Put the tables between the marks of a file."),
+    ] = None,
+    out: Out = None,
+) -> None:
+    """Run a campaign: scenarios drawn at random by seed, on Dask.
+
+    Writes runs.parquet and summary.html to runs/<campaign>, or to --out. A sweep that was interrupted goes on
+    where it was. The same seed gives the same results on any number of workers. Fails if a variant that must
+    keep limits crosses one.
+    """
+    if scheduler is not None and workers is not None:
+        raise typer.BadParameter("a cluster has its own workers", param_hint="--workers")
+    tool = extras.load("tope.sweep", "sweeping", "sweep")
+    if replay is not None:
+        replay_run(tool, campaign, replay, out)
+        return
+    figures = extras.load("tope.sweep_figures", "sweeping", "sweep")
+    mark = figures.Mark(str(campaign))
+    for file in markdown or ():  # before hours of running
+        mark.check(str(file), file.read_text(encoding="utf-8"))
+    with progress_bar(f"Sweeping {campaign.stem}") as progress:
+        done = tool.sweep(
+            campaign, out=out, runs=runs, workers=workers, scheduler=scheduler, progress=progress
+        )
+    results = figures.Results(done.campaign, done.table)
+    console = output()
+    for each in figures.all_figures(results):
+        print_figures(console, each)
+    if verdict := figures.verdict(results):
+        console.print(Text(verdict.replace("`", "")))
+    console.print(pairs([written(done.out, "summary.html"), written(done.out, "runs.parquet")]))
+    for file in markdown or ():
+        tables = figures.markdown(results, tool.shown(campaign, runs))
+        file.write_text(mark.put(file.read_text(encoding="utf-8"), tables), encoding="utf-8")
+    if any(results.crossed(variant) for variant in done.campaign.must_keep_limits):
+        raise typer.Exit(1)
+
+
+@app.command()
 def bench(
     cycles: Annotated[int, typer.Option("--cycles", min=1, help="Cycles a case, at least.")] = 200_000,
     json_file: Annotated[Path | None, typer.Option("--json", metavar="FILE", help="Also write JSON.")] = None,
@@ -291,7 +352,25 @@ def pairs(rows: Sequence[tuple[str, str]]) -> Table:
 
 def written(folder: Path, name: str) -> tuple[str, str]:
     """Where the result is."""
-    return ("Report" if name == "report.html" else "Written to", str(folder / name))
+    return ("Report" if name.endswith(".html") else "Written to", str(folder / name))
+
+
+def replay_run(tool: ModuleType, campaign: Path, number: int, out: Path | None) -> None:
+    """Simulate one run of a campaign, with a report."""
+    folder = out or Path("runs") / campaign.stem / f"replay-{number}"
+    with progress_bar(f"Simulating run {number}") as progress:
+        done = tool.replay(campaign, number, out=folder, progress=progress)
+    console = output()
+    say_notices(console, done.scenario["notices"])
+    console.print(pairs([*words.summary_rows(done.summary), written(folder, "report.html")]))
+
+
+def print_figures(console: Console, figures: Any) -> None:
+    """A table of a sweep."""
+    table = Table(*figures.header, title=figures.title)
+    for row in figures.rows:
+        table.add_row(*map(Text, row))
+    console.print(table)
 
 
 def print_peers(console: Console, peers: Sequence[dict[str, Any]]) -> None:
