@@ -35,10 +35,6 @@ class ParserMessages : public console_bridge::OutputHandler {
 };
 
 std::string read(const std::filesystem::path& file) {
-  std::error_code no_error;
-  if (std::filesystem::is_directory(file, no_error)) {
-    throw ConfigError(file.string() + ": is a folder, expected a URDF file");
-  }
   const std::ifstream stream(file);
   if (!stream || std::filesystem::is_directory(file)) {
     throw ConfigError(file.string() + ": no such URDF file, or it cannot be read");

@@ -181,7 +181,6 @@ BOOST_AUTO_TEST_CASE(bad_robot_files_are_refused) {
   const std::string good = read_text(source_path("robots/youbot/youbot.yaml"));
   check_error([] { RobotConfig::from_yaml("/no/such/robot.yaml"); }, {"/no/such/robot.yaml", "no such file"});
   check_error([] { RobotConfig::from_yaml(source_path("robots")); }, {"robots: is a folder"});
-  check_error([] { Robot::from_urdf(source_path("robots"), ""); }, {"robots: is a folder, expected a URDF"});
   check_config_error("a: [1", {"robot.yaml:", "not YAML"});
   check_config_error("- 1\n", {"robot.yaml", "expected a map"});
   check_config_error("name: x\nrotor_inertias: {}\n",
