@@ -2,7 +2,7 @@
 
 Ten thousand states of the youBot close to where a law may jump, each followed for 30 ms at 1 ms and 0.1 ms. A
 continuous law's largest jump between two cycles shrinks tenfold, one that switches keeps it. Where it shrinks
-less, the command may still be continuous but steep: then it must shrink so at 10 or 1 us. Kinds of states:
+less, the command may still be continuous but steep: then it must shrink so at a shorter period. Kinds:
   limit     some joints inside the buffers of their limits, on either side
   tie       several joints equally deep inside their buffers, to rounding
   singular  the arm stretched, or its wrist aligned, to within 0.02 rad
@@ -26,7 +26,7 @@ SCENARIO = Path(__file__).parent / "cycle_{}.yaml"
 KINDS = ("limit", "tie", "singular")
 JOINTS = ("arm_joint_1", "arm_joint_2", "arm_joint_3", "arm_joint_4", "arm_joint_5")
 DURATION = 0.03  # s
-PERIODS = (1e-3, 1e-4, 1e-5, 1e-6)  # s
+PERIODS = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7)  # s
 BUFFER = {"velocity": 0.1, "torque": 0.05}  # rad
 CONTINUOUS = 8.0  # ratio from which a command counts as continuous
 STILL = 1e-6  # of its bound: a command that changes less is at rest, and its ratio says nothing
@@ -123,7 +123,16 @@ def main() -> None:
     arguments = parser.parse_args()
     console = Console()
     table = Table(
-        "mode", "method", "states near", "ratio >= 8", "median", "least", "from 0.1 ms", "from 10 us", "never"
+        "mode",
+        "method",
+        "states near",
+        "ratio >= 8",
+        "median",
+        "least",
+        "from 0.1 ms",
+        "from 10 us",
+        "from 1 us",
+        "never",
     )
     jumping = []
     with ProcessPoolExecutor() as pool:

@@ -39,7 +39,7 @@ void OpenBasis::reset(const Matrix& t) {
 
 const PanelMatrix& OpenBasis::project(const PanelMatrix& a, PanelMatrix& workspace) const {
   if (whole_) {
-    return a;
+    return a;  // NOLINT(bugprone-return-const-ref-from-parameter): as documented, the caller's
   }
   multiply(a, open_, workspace);
   return workspace;
