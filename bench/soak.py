@@ -44,8 +44,8 @@ def soak(mode: str, cycles: int, console: Console) -> tuple[list[int], list[floa
     rest = np.zeros_like(path[0])
     memory, times = [], []
     cycle = 0
+    taken = np.zeros(cycles // BLOCKS)  # one array for all blocks: its copies would count as memory
     for _ in track(range(BLOCKS), mode, console=console):
-        taken = np.empty(cycles // BLOCKS)
         for i in range(len(taken)):
             q = path[cycle % STATES]
             begin = time.perf_counter_ns()
@@ -53,7 +53,8 @@ def soak(mode: str, cycles: int, console: Console) -> tuple[list[int], list[floa
             taken[i] = time.perf_counter_ns() - begin
             cycle += 1
         memory.append(resident_kib())
-        times.append(1e-3 * float(np.median(taken)))
+        taken.sort()
+        times.append(1e-3 * float(taken[len(taken) // 2]))
     return memory, times
 
 
