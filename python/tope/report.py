@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 from numpy.typing import NDArray
 
 from tope import _core, words
+from tope.pages import page_template
 from tope.panels import Array, Panel, Section, Series, packed
 from tope.runs import Run
 from tope.saturation import distances, flags_of, saturation, stretches
@@ -75,14 +75,7 @@ def write_page(
     first = next(iter(view.runs.values()))
     parts = [section for section in sections(view) if section.panels]
     space = scene(view.runs)
-    environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent / "templates"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    page = environment.get_template("report.html.j2").render(
+    page = page_template("report.html.j2").render(
         scenario=first.scenario,
         facts=words.scenario_facts(first.scenario, [run.scenario["method"] for run in view.runs.values()]),
         notices=list(

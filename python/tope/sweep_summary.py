@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pyarrow as pa
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from tope.campaign import Campaign
+from tope.pages import page_template
 from tope.sweep_figures import Results, all_figures, count, reasons, verdict, worst_cases
 from tope.sweep_plots import histograms
 
@@ -17,14 +17,7 @@ def write_sweep_summary(campaign: Campaign, table: pa.Table, path: Path, command
     """Fill in the template; `command` made the sweep."""
     results = Results(campaign, table)
     one_run = command.partition(" --runs")[0]  # replays need no number of runs
-    environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent / "templates"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    page = environment.get_template("sweep.html.j2").render(
+    page = page_template("sweep.html.j2").render(
         campaign=campaign,
         command=command,
         total=count(len(table)),

@@ -55,8 +55,6 @@ void OpenBasis::close_rows() {
   take_out(open_, whole_);
   if (with_image_) {
     take_out(image_, false);
-  } else {
-    image_.drop_front(rows_.rows());
   }
   whole_ = false;
 }
