@@ -168,6 +168,20 @@ void bind_controller(nb::module_& module) {
           },
           "handle"_a, nb::kw_only(), "over"_a = 0.0, "Removes a task; `over` seconds let it fade out.")
       .def(
+          "move",
+          [](Controller& controller, TaskHandle handle, int level, double over) {
+            controller.move(handle, level, {.over = over});
+          },
+          "handle"_a, nb::kw_only(), "level"_a, "over"_a = 0.0,
+          "Moves a task to another level, in `over` seconds; it is complete all the while.")
+      .def(
+          "replace",
+          [](Controller& controller, TaskHandle handle, const TaskSpec& spec, double over) {
+            controller.replace(handle, *spec.make(controller.robot()), {.over = over});
+          },
+          "handle"_a, "task"_a, nb::kw_only(), "over"_a = 0.0,
+          "Puts another task in the place of one, in `over` seconds: with another target for example.")
+      .def(
           "move_limits",
           [](Controller& controller, const std::string& joint, double lower, double upper, double lower_rate,
              double upper_rate) {

@@ -50,6 +50,19 @@ bool uses_limit_rows(LimitMethod method) {
   return method != LimitMethod::unilateral && method != LimitMethod::none;
 }
 
+void require_level(int level) {
+  if (level < 1) {
+    throw ConfigError("level: must be at least 1 (limits are above all levels), got " +
+                      std::to_string(level));
+  }
+}
+
+void require_transition(const TransitionOptions& options) {
+  if (!std::isfinite(options.over) || options.over < 0.0) {
+    throw ConfigError("over: must be zero or positive [s], got " + std::to_string(options.over));
+  }
+}
+
 double require_period(double dt) {
   if (!std::isfinite(dt) || dt <= 0.0) {
     throw ConfigError("dt: must be positive and finite [s], got " + std::to_string(dt));
@@ -127,57 +140,83 @@ std::vector<Condition> Controller::conditions() const {
 }
 
 TaskHandle Controller::add(int level, const Task& task, const TransitionOptions& options) {
-  if (level < 1) {
-    throw ConfigError("level: must be at least 1 (limits are above all levels), got " +
-                      std::to_string(level));
+  require_level(level);
+  require_transition(options);
+  check_task(task);
+  const TaskHandle handle{next_id_++};
+  Entry added{.id = handle.id, .generation = 0, .level = level, .task = task.clone()};
+  added.task->restart();
+  insert(std::move(added), options);
+  return handle;
+}
+
+void Controller::remove(TaskHandle handle, const TransitionOptions& options) {
+  require_transition(options);
+  const int leaving = entry(handle).id;
+  for (Entry& e : entries_) {
+    if (e.id == leaving) {
+      e.fade(0.0, options.over);
+    }
   }
-  if (!std::isfinite(options.over) || options.over < 0.0) {
-    throw ConfigError("over: must be zero or positive [s], got " + std::to_string(options.over));
-  }
+}
+
+void Controller::move(TaskHandle handle, int level, const TransitionOptions& options) {
+  require_level(level);
+  require_transition(options);
+  const Entry& old = staying(handle);
+  insert({.id = old.id, .generation = old.generation + 1, .level = level, .task = old.task->clone()},
+         options);
+}
+
+void Controller::replace(TaskHandle handle, const Task& task, const TransitionOptions& options) {
+  require_transition(options);
+  check_task(task);
+  const Entry& old = staying(handle);
+  Entry added{.id = old.id, .generation = old.generation + 1, .level = old.level, .task = task.clone()};
+  added.task->restart();
+  insert(std::move(added), options);
+}
+
+void Controller::check_task(const Task& task) const {
   if (task.jacobian().cols() != robot_.nv()) {
     throw ConfigError("task " + std::string(task.type()) + " was made for a robot with " +
                       std::to_string(task.jacobian().cols()) + " degrees of freedom, this one has " +
                       std::to_string(robot_.nv()));
   }
+}
+
+/// Lets an entry appear, behind those of its level.
+void Controller::insert(Entry entry, const TransitionOptions& options) {
   std::erase_if(entries_, [](const Entry& e) { return e.gone(); });
-  std::unique_ptr<Task> copy = task.clone();
-  copy->restart();
-  const double activation = options.over > 0.0 ? 0.0 : 1.0;
-  const auto after = std::upper_bound(entries_.begin(), entries_.end(), level,
+  entry.activation = options.over > 0.0 ? 0.0 : 1.0;
+  entry.fade(1.0, options.over);
+  const auto after = std::upper_bound(entries_.begin(), entries_.end(), entry.level,
                                       [](int value, const Entry& e) { return value < e.level; });
-  const TaskHandle handle{next_id_++};
-  entries_.insert(after, Entry{.id = handle.id,
-                               .level = level,
-                               .task = std::move(copy),
-                               .activation = activation,
-                               .from = activation,
-                               .to = 1.0,
-                               .over = options.over,
-                               .start_time = std::numeric_limits<double>::quiet_NaN()});
+  entries_.insert(after, std::move(entry));
   rebuild();
-  return handle;
 }
 
-void Controller::remove(TaskHandle handle, const TransitionOptions& options) {
-  if (!std::isfinite(options.over) || options.over < 0.0) {
-    throw ConfigError("over: must be zero or positive [s], got " + std::to_string(options.over));
-  }
-  auto& leaving =
-      const_cast<Entry&>(entry(handle));  // NOLINT(cppcoreguidelines-pro-type-const-cast): our own
-  leaving.from = leaving.activation;
-  leaving.to = 0.0;
-  leaving.over = options.over;
-  leaving.start_time = std::numeric_limits<double>::quiet_NaN();
-}
-
+/// The newest entry that a handle names.
 const Controller::Entry& Controller::entry(TaskHandle handle) const {
-  const auto found =
-      std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.id == handle.id; });
-  if (found == entries_.end()) {
+  const Entry* newest = nullptr;
+  for (const Entry& e : entries_) {
+    if (e.id == handle.id && (newest == nullptr || e.generation > newest->generation)) {
+      newest = &e;
+    }
+  }
+  if (newest == nullptr) {
     throw Error("no task with handle " + std::to_string(handle.id) +
                 ": it was never added, or is removed already");
   }
-  return *found;
+  return *newest;
+}
+
+const Controller::Entry& Controller::staying(TaskHandle handle) const {
+  const Entry& found = entry(handle);
+  if (found.to == 0.0) {
+    throw Error("the task with handle " + std::to_string(handle.id) + " is being removed: add it anew");
+  }
+  return found;
 }
 
 const Task& Controller::task(TaskHandle handle) const { return *entry(handle).task; }
@@ -218,10 +257,27 @@ void Controller::rebuild() {
                             .b = Vector::Zero(e.task->size()),
                             .is_motion = e.task->is_motion()});
   }
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    stack_.tasks[entry_row_[i]].replaced_by = replacement_row(entries_[i]);
+  }
   if (field_pending) {
     add_field(entries_.empty() ? 1 : entries_.back().level + 1);
   }
   law_ = Law(stack_, law_options());
+}
+
+/// Index of the rows of what replaces an entry next; -1: nothing.
+int Controller::replacement_row(const Entry& entry) const {
+  int row = -1;
+  int generation = std::numeric_limits<int>::max();
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    const Entry& other = entries_[i];
+    if (other.id == entry.id && other.generation > entry.generation && other.generation < generation) {
+      generation = other.generation;
+      row = static_cast<int>(entry_row_[i]);
+    }
+  }
+  return row;
 }
 
 bool Controller::valid(const VectorArg& q, const VectorArg& v, double t, const Eigen::Ref<Vector>& u) const {
@@ -286,6 +342,14 @@ void Controller::fill_limits(const VectorArg& q, const VectorArg& v) {
   stack_.motion_upper = limits_.motion_upper();
 }
 
+/// From where it is, beginning with the next update.
+void Controller::Entry::fade(double goal, double seconds) {
+  from = activation;
+  to = goal;
+  over = seconds;
+  start_time = std::numeric_limits<double>::quiet_NaN();
+}
+
 void Controller::Entry::advance(double t) {
   if (std::isnan(start_time)) {
     start_time = t;
@@ -294,12 +358,33 @@ void Controller::Entry::advance(double t) {
   activation = from + (to - from) * smooth_step(progress);
 }
 
+void Controller::advance_tasks(double t) {
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    entries_[i].advance(t);
+    stack_.tasks[entry_row_[i]].activation = entries_[i].activation;
+  }
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    if (replaced(entry_row_[i])) {
+      entries_[i].drop();
+      stack_.tasks[entry_row_[i]].activation = 0.0;
+    }
+  }
+}
+
+/// True where what takes the place of a task is complete.
+bool Controller::replaced(std::size_t row) const {
+  int next = stack_.tasks[row].replaced_by;
+  while (next >= 0 && stack_.tasks[static_cast<std::size_t>(next)].activation < 1.0) {
+    next = stack_.tasks[static_cast<std::size_t>(next)].replaced_by;
+  }
+  return next >= 0;
+}
+
 void Controller::fill_tasks(double t) {
+  advance_tasks(t);
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     Entry& e = entries_[i];
-    e.advance(t);
     TaskRows& rows = stack_.tasks[entry_row_[i]];
-    rows.activation = e.activation;
     if (e.gone()) {
       continue;
     }

@@ -24,6 +24,18 @@ int Stack::max_level_rows() const {
 Selection::Selection(const Stack& stack)
     : limits(static_cast<std::size_t>(stack.size()), 0), tasks(stack.tasks.size(), 0) {}
 
+void Selection::assign_present(const Stack& stack, const Selection& entered) {
+  std::copy(entered.limits.begin(), entered.limits.end(), limits.begin());
+  std::copy(entered.tasks.begin(), entered.tasks.end(), tasks.begin());
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    for (int next = stack.tasks[i].replaced_by; next >= 0 && tasks[i] != 0;) {
+      const auto replacement = static_cast<std::size_t>(next);
+      tasks[i] = entered.tasks[replacement] != 0 ? 0 : 1;
+      next = stack.tasks[replacement].replaced_by;
+    }
+  }
+}
+
 void Solution::set_zero() {
   y.setZero();
   y_limits.setZero();

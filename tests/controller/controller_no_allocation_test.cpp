@@ -53,6 +53,9 @@ BOOST_AUTO_TEST_CASE(while_tasks_come_and_go) {
     controller.add(3, FramePosition(robot, "ee", Vector3(0.5, 0.1, 0.1)), {.over = 0.05});
     controller.add(4, Posture(robot, Vector::Zero(8)), {.over = 0.08});
     guarded_steps(loop, 30, "insertion");
+    controller.move(turn, 3, {.over = 0.02});
+    controller.replace(turn, FrameOrientation(robot, "ee", Matrix3::Identity()), {.over = 0.03});
+    guarded_steps(loop, 30, "changes");
     controller.remove(turn, {.over = 0.03});
     controller.add(1, JointPosition(robot, {{"arm_joint_5", 3.0}, {"base_x", 1.0}}), {.over = 0.04});
     guarded_steps(loop, 30, "removal");

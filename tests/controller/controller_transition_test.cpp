@@ -1,10 +1,11 @@
-// Tasks that come and go: activations over time, commands that stay continuous (their largest jump falls
-// with the period), what a task added at once does, and handles of tasks that are gone. Not here:
+// Tasks that come, go, move between levels and are replaced: activations over time, commands that stay continuous (their
+// largest jump falls with the period) in both modes, exact ends, and handles of tasks that are gone. Not here:
 // orientation errors that pass pi, where a command jumps by definition and the status says so.
 #include "support/loop.hpp"
 #include "support/robots.hpp"
 #include "support/text.hpp"
 
+#include <tope/plant/rigid_body.hpp>
 #include <tope/task/damping.hpp>
 #include <tope/task/frame_orientation.hpp>
 #include <tope/task/frame_position.hpp>
@@ -49,6 +50,78 @@ double largest_jump(LimitMethod method, int seed, double dt) {
   return jump;
 }
 
+/// A robot that moves as it is told, in either mode.
+struct Body {
+  Body(Random& random, LimitMethod method, Mode mode, double dt)
+      : robot(youbot_before_obstacle()),
+        controller(robot, {.mode = mode, .dt = dt, .limits = {.method = method}}),
+        reach(robot, "ee", Vector3(0.5, 0.1, 0.2) + Vector3(random.vector(3, 0.1))),
+        again(robot, "ee", Vector3(0.4, -0.1, 0.3) + Vector3(random.vector(3, 0.1))),
+        turn(robot, "ee", random.rotation()),
+        rest(robot, random_position(random, robot, 0.3)),
+        plant(robot, {}, dt),
+        q(Vector::Zero(8)) {
+    q << 0.0, 0.0, 0.0, 0.0, 0.4, 0.9, 0.6, 1.8;
+    plant.reset(q);
+  }
+
+  void run(double duration) {
+    const bool torque = controller.options().mode == Mode::torque;
+    const double dt = controller.options().dt;
+    const Vector& bound = torque ? robot.effort_limit() : robot.velocity_limit();
+    for (auto cycles = std::lround(duration / dt); cycles > 0; --cycles) {
+      last = u;
+      controller.update(q, v, t, u);
+      if (t > 0.0) {
+        jump = std::max(jump, (u - last).cwiseQuotient(bound).cwiseAbs().maxCoeff());
+      }
+      t += dt;
+      if (torque) {
+        plant.step(u, dt);
+        q = plant.position();
+        v = plant.velocity();
+      } else {
+        v = u;
+        q += dt * u;
+      }
+    }
+  }
+
+  Robot robot;
+  Controller controller;
+  FramePosition reach;
+  FramePosition again;
+  FrameOrientation turn;
+  Posture rest;
+  RigidBody plant;
+  Vector q;
+  Vector v = Vector::Zero(8);
+  Vector u = Vector::Zero(8);
+  Vector last;
+  double t = 0.0;
+  double jump = 0.0;
+};
+
+/// Largest change of a command between cycles, over the joint's bound, while levels and targets change.
+double largest_jump_of_changes(LimitMethod method, Mode mode, int seed, double dt) {
+  Random random(seed);
+  Body body(random, method, mode, dt);
+  Controller& controller = body.controller;
+  const TaskHandle turn = controller.add(1, body.turn);
+  const TaskHandle reach = controller.add(2, body.reach);
+  controller.add(4, body.rest);
+  body.run(0.1);
+  controller.move(reach, 1, {.over = 0.2});
+  controller.move(turn, 3, {.over = 0.3});
+  body.run(0.1);
+  controller.move(turn, 2, {.over = 0.2});  // before it has arrived
+  controller.replace(reach, body.again, {.over = 0.2});
+  body.run(0.15);
+  controller.remove(turn, {.over = 0.2});  // while it moves
+  body.run(0.3);
+  return body.jump;
+}
+
 }  // namespace
 
 BOOST_AUTO_TEST_SUITE(controller_transition)
@@ -68,6 +141,69 @@ BOOST_AUTO_TEST_CASE(commands_stay_continuous) {
     }
     BOOST_TEST_MESSAGE(to_string(method) << ": lowest ratio " << lowest);
   }
+}
+
+BOOST_AUTO_TEST_CASE(levels_and_targets_change_without_a_jump) {
+  for (const Mode mode : {Mode::velocity, Mode::torque}) {
+    for (const LimitMethod method : {LimitMethod::unilateral, LimitMethod::chain}) {
+      for (int seed = 0; seed < 6; ++seed) {
+        BOOST_TEST_CONTEXT((mode == Mode::torque ? "torque " : "velocity ")
+                           << to_string(method) << ", seed " << seed) {
+          const double coarse = largest_jump_of_changes(method, mode, seed, 1e-3);
+          const double fine = largest_jump_of_changes(method, mode, seed, 1e-4);
+          BOOST_TEST(coarse / fine >= 8.0);
+        }
+      }
+    }
+  }
+}
+
+// A controller that always had the tasks like this gives the same command.
+BOOST_AUTO_TEST_CASE(both_ends_of_a_change_are_exact) {
+  for (const Mode mode : {Mode::velocity, Mode::torque}) {
+    for (const LimitMethod method : {LimitMethod::unilateral, LimitMethod::chain}) {
+      Random random(3);
+      Body body(random, method, mode, 1e-3);
+      const auto fresh_command = [&](int turn_level, int reach_level, const Task& reach) {
+        Controller fresh(body.robot, body.controller.options());
+        fresh.add(turn_level, body.turn);
+        fresh.add(reach_level, reach);
+        Vector expected(8);
+        fresh.update(body.q, body.v, body.t, expected);
+        return expected;
+      };
+      const auto difference = [&](const Vector& expected) {
+        body.controller.update(body.q, body.v, body.t, body.u);
+        return (body.u - expected).cwiseAbs().maxCoeff();
+      };
+      const TaskHandle turn = body.controller.add(1, body.turn);
+      const TaskHandle reach = body.controller.add(2, body.reach);
+      body.run(0.05);
+      body.controller.move(turn, 3, {.over = 0.1});
+      body.controller.replace(reach, body.again, {.over = 0.1});
+      BOOST_TEST(difference(fresh_command(1, 2, body.reach)) <= 1e-9);
+      body.run(0.05);
+      BOOST_TEST(difference(fresh_command(1, 2, body.reach)) > 1e-3);
+      BOOST_TEST(difference(fresh_command(3, 2, body.again)) > 1e-3);
+      body.run(0.06);
+      BOOST_TEST(difference(fresh_command(3, 2, body.again)) <= 1e-9);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(only_a_task_that_stays_can_change) {
+  Loop loop(youbot(), {});
+  Controller& controller = loop.controller;
+  const TaskHandle reach = controller.add(1, FramePosition(loop.robot, "ee", Vector3(0.5, 0.1, 0.2)));
+  check_error([&] { controller.move(reach, 0); }, {"level", "at least 1", "0"});
+  check_error([&] { controller.move(reach, 2, {.over = -1.0}); }, {"over", "-1"});
+  check_error([&] { controller.move({42}, 2); }, {"no task with handle 42"});
+  controller.replace(reach, Damping(loop.robot), {.over = 0.1});
+  BOOST_TEST(controller.task(reach).type() == "damping");
+  controller.remove(reach, {.over = 0.1});
+  loop.step();
+  check_error([&] { controller.move(reach, 2); }, {"is being removed"});
+  check_error([&] { controller.replace(reach, Damping(loop.robot)); }, {"is being removed"});
 }
 
 BOOST_AUTO_TEST_CASE(activations_rise_and_fall_as_told) {

@@ -106,6 +106,62 @@ BOOST_AUTO_TEST_CASE(equals_phi_at_every_vertex) {
   }
 }
 
+// A task is complete at its old level or at its new one, never half gone: what is not selected is erased here.
+BOOST_AUTO_TEST_CASE(blends_a_task_and_what_replaces_it) {
+  for (int seed = 0; seed < 100; ++seed) {
+    BOOST_TEST_CONTEXT("seed " << seed) {
+      Random random(seed);
+      RandomStackOptions options = random_options(random);
+      options.limit_transitions = options.task_transitions = 0;
+      Stack stack = random_stack(random, options);
+      const int count = static_cast<int>(stack.tasks.size());
+      if (count < 2) {
+        continue;
+      }
+      const auto replaced = static_cast<std::size_t>(random.integer(0, count - 1));
+      const auto replacement =
+          (replaced + static_cast<std::size_t>(random.integer(1, count - 1))) % stack.tasks.size();
+      const auto without = [](Stack rest, std::size_t task) {
+        rest.tasks.erase(rest.tasks.begin() + static_cast<std::ptrdiff_t>(task));
+        return phi(rest, select_complete(rest));
+      };
+      const Vector before = without(stack, replacement);
+      const Vector after = without(stack, replaced);
+      stack.tasks[replaced].replaced_by = static_cast<int>(replacement);
+      for (const double xi : {0.0, random.uniform(0.01, 0.99), 1.0}) {
+        stack.tasks[replacement].activation = xi;
+        const Vector expected = (1.0 - xi) * before + xi * after;
+        BOOST_TEST(infinity_norm(chain_command(stack) - expected) <= 1e-12 * (1.0 + expected.norm()));
+      }
+    }
+  }
+}
+
+// The task on level 1 moves to level 2 and, before it is there, to level 3.
+BOOST_AUTO_TEST_CASE(blends_a_second_replacement_under_way) {
+  Random random(5);
+  Stack stack = random_stack(random, {.n = 8, .levels = 3, .complete_limits = 0.0, .deficient = 0.0});
+  stack.tasks.clear();
+  for (int level = 1; level <= 3; ++level) {
+    stack.tasks.push_back({.level = level, .a = random.matrix(3, 8), .b = random.vector(3)});
+  }
+  const auto alone = [&](std::size_t task) {
+    Selection selection(stack);
+    selection.tasks[task] = 1;
+    return phi(stack, selection);
+  };
+  stack.tasks[0].replaced_by = 1;
+  stack.tasks[1].replaced_by = 2;
+  const auto check = [&](double second, double third, const Vector& expected) {
+    stack.tasks[1].activation = second;
+    stack.tasks[2].activation = third;
+    BOOST_TEST(infinity_norm(chain_command(stack) - expected) <= 1e-12);
+  };
+  check(0.7, 0.2, 0.3 * alone(0) + 0.5 * alone(1) + 0.2 * alone(2));
+  check(0.3, 0.6, 0.4 * alone(0) + 0.6 * alone(2));  // the third enters before the second
+  check(1.0, 0.6, 0.4 * alone(1) + 0.6 * alone(2));
+}
+
 BOOST_AUTO_TEST_CASE(is_the_convex_combination_for_one_transition) {
   for (int seed = 0; seed < 50; ++seed) {
     BOOST_TEST_CONTEXT("seed " << seed) {

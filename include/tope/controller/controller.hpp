@@ -20,7 +20,7 @@ struct TaskHandle {
   int id = -1;
 };
 
-/// How a task enters or leaves.
+/// How a task enters, leaves or changes.
 struct TransitionOptions {
   double over = 0.0;  ///< seconds from the next update; 0: at once
 };
@@ -28,7 +28,9 @@ struct TransitionOptions {
 /// Turns the robot's state into a command that serves tasks in strict order of priority, keeps joint limits
 /// and bounds.
 ///
-/// Building, add() and remove() allocate and throw; update() does neither. One controller per thread.
+/// Tasks come, go, move between levels and are replaced at once or over a stated time, several of them together, and
+/// again while a change is under way: the chain blends the commands, and both ends are exact.
+/// Building and changing tasks allocates and throws; update() does neither. One controller per thread.
 class Controller {
  public:
   /// Takes a copy of the robot with its bounds as they are. Errors: ConfigError for bad options, or a safety
@@ -40,6 +42,12 @@ class Controller {
   TaskHandle add(int level, const Task& task, const TransitionOptions& options = {});
   /// Lets the task fade out. Errors: Error for an unknown handle.
   void remove(TaskHandle handle, const TransitionOptions& options = {});
+  /// Moves the task to another level; it is complete all the while, at one level or the other, and its reference goes
+  /// on. Errors: ConfigError for a bad level or time, Error for an unknown handle or a task that is leaving.
+  void move(TaskHandle handle, int level, const TransitionOptions& options = {});
+  /// Puts a copy of another task in its place, with another target for example. The handle then names that one, whose
+  /// reference starts with the next update. Errors: as add() and move().
+  void replace(TaskHandle handle, const Task& task, const TransitionOptions& options = {});
 
   /// Moves the limits of a joint from the next update on, towards an obstacle that moves for example; call it before
   /// every update while they move. Never allocates or throws. False, and nothing changes, for a joint that is none,
@@ -58,7 +66,7 @@ class Controller {
   const Vector& lower_activation() const { return lower_activation_; }
   /// The task as of the last update. Errors: Error for an unknown handle.
   const Task& task(TaskHandle handle) const;
-  /// How far a task is present, 0 to 1.
+  /// How far a task is present, 0 to 1; while it moves or is replaced, how far that has got.
   double activation(TaskHandle handle) const;
 
   const Robot& robot() const { return robot_; }
@@ -69,19 +77,28 @@ class Controller {
 
  private:
   struct Entry {
-    int id;
+    int id;          // shared by a task and what it replaces
+    int generation;  // grows with every replacement
     int level;
     std::unique_ptr<Task> task;
-    double activation;
-    double from;        // activation when the transition began
-    double to;          // and when it ends
-    double over;        // seconds it takes
-    double start_time;  // NaN until the next update
+    double activation = 0.0;
+    double from = 0.0;        // activation when the transition began
+    double to = 0.0;          // and when it ends
+    double over = 0.0;        // seconds it takes
+    double start_time = 0.0;  // NaN until the next update
     void advance(double t);
     bool gone() const { return activation == 0.0 && to == 0.0; }
+    void fade(double goal, double seconds);
+    void drop() { activation = from = to = 0.0; }
   };
 
   const Entry& entry(TaskHandle handle) const;
+  const Entry& staying(TaskHandle handle) const;
+  void check_task(const Task& task) const;
+  void insert(Entry entry, const TransitionOptions& options);
+  int replacement_row(const Entry& entry) const;
+  bool replaced(std::size_t row) const;
+  void advance_tasks(double t);
   LawOptions law_options() const;
   void rebuild();
   bool valid(const VectorArg& q, const VectorArg& v, double t, const Eigen::Ref<Vector>& u) const;

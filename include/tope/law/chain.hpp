@@ -11,7 +11,8 @@ namespace tope {
 /// Continuous, equal to phi where all activations are 0 or 1, exact for an element with xi = 1, strict
 /// priority kept, with one law for each distinct value strictly between 0 and 1, and one more. Sorted
 /// activations as in Generalized Hierarchical Control (Liu, Tan, Padois 2016), here on commands instead of
-/// projectors.
+/// projectors. phi may be any function of S: a task that another one replaces is absent where that one is in S, so
+/// that the task stays complete while it moves to another level or target.
 class Chain {
  public:
   explicit Chain(const Stack& stack);
@@ -22,10 +23,11 @@ class Chain {
  private:
   struct Element {  // in transition
     double activation;
-    char* selected;
+    char* entered;
   };
 
-  Selection selection_;
+  Selection entered_;  // S
+  Selection present_;
   Solution part_;
   std::vector<Element> elements_;
 };

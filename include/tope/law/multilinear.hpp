@@ -20,7 +20,8 @@ class Multilinear {
   void solve(const Stack& stack, const Vector& limit_activation, StackLaw& law, Solution& solution);
 
  private:
-  Selection selection_;
+  Selection entered_;  // S
+  Selection present_;
   Solution part_;
   Chain chain_;
 };

@@ -13,6 +13,7 @@ struct TaskRows {
   Matrix a;                 ///< A = Q L (m x n)
   Vector b;                 ///< (m)
   bool is_motion = false;   ///< A is the stack's motion T, whatever `a` holds: rows on the joints themselves
+  int replaced_by = -1;  ///< index of the task that takes its place: absent wherever that one is in; -1: none
 };
 
 /// Everything a law sees at one instant: n unknowns y, limits on the motion T y (joint velocities or
@@ -40,6 +41,9 @@ struct Selection {
 
   std::vector<char> limits;  ///< one a joint
   std::vector<char> tasks;   ///< one a task
+
+  /// Becomes `entered` without the tasks whose replacement has entered too.
+  void assign_present(const Stack& stack, const Selection& entered);
 };
 
 /// What a law returns.
