@@ -2,13 +2,16 @@
 #include "task_spec.hpp"
 
 #include <tope/common/error.hpp>
+#include <tope/task/center_of_mass.hpp>
 #include <tope/task/damping.hpp>
 #include <tope/task/frame_orientation.hpp>
 #include <tope/task/frame_pose.hpp>
 #include <tope/task/frame_position.hpp>
 #include <tope/task/joint_position.hpp>
+#include <tope/task/pointing.hpp>
 #include <tope/task/posture.hpp>
 #include <tope/task/rotation_error.hpp>
+#include <tope/task/selected_rows.hpp>
 
 #include <Eigen/Geometry>
 
@@ -27,10 +30,10 @@ nb::object numbers_from(const nb::handle& values) {
 }
 
 template <typename T>
-T numbers_from(const nb::handle& values, const char* expected) {
+T numbers_from(const nb::handle& values, const char* what, const char* expected) {
   T result;
   if (!nb::try_cast<T>(numbers_from(values), result)) {
-    throw ConfigError(std::string("target: expected ") + expected);
+    throw ConfigError(std::string(what) + ": expected " + expected);
   }
   return result;
 }
@@ -42,8 +45,8 @@ Matrix3 rotation_from(const nb::handle& target) {
   if (nb::try_cast<Matrix3>(numbers, matrix)) {
     return matrix;
   }
-  const auto wxyz =
-      numbers_from<Eigen::Vector4d>(numbers, "a 3 x 3 rotation matrix or a quaternion (w, x, y, z)");
+  const auto wxyz = numbers_from<Eigen::Vector4d>(numbers, "target",
+                                                  "a 3 x 3 rotation matrix or a quaternion (w, x, y, z)");
   if (std::abs(wxyz.norm() - 1.0) > 1e-2) {
     throw ConfigError("target: not a rotation: the norm of the quaternion is " + std::to_string(wxyz.norm()));
   }
@@ -51,7 +54,7 @@ Matrix3 rotation_from(const nb::handle& target) {
 }
 
 Vector3 point_at(const nb::handle& target) {
-  return numbers_from<Vector3>(target, "a point of three numbers [m]");
+  return numbers_from<Vector3>(target, "target", "a point of three numbers [m]");
 }
 
 /// A target that a Python function moves. What it raises inside the control loop must not cross it: the target stands
@@ -153,12 +156,43 @@ void bind_tasks(nb::module_& module) {
       nb::kw_only(), "frame"_a, "position"_a, "rotation"_a, "reference"_a = Exponential{},
       "Position and orientation of a frame as one task of six rows.");
   module.def(
+      "Pointing",
+      [](const std::string& frame, const nb::object& axis, const nb::object& target,
+         const Reference& reference) {
+        return TaskSpec{"pointing", [=, direction = numbers_from<Vector3>(axis, "axis", "three numbers"),
+                                     point = point_from(target)](const Robot& robot) {
+                          return std::make_unique<Pointing>(robot, frame, direction, point, reference);
+                        }};
+      },
+      nb::kw_only(), "frame"_a, "axis"_a, "target"_a, "reference"_a = Exponential{},
+      "Points an axis of a frame, given along the frame's axes, at a point [m], or at where a function t -> "
+      "(point, velocity) moves it.");
+  module.def(
+      "CenterOfMass",
+      [](const nb::object& target, const Reference& reference) {
+        return TaskSpec{"center_of_mass", [=, point = point_from(target)](const Robot& robot) {
+                          return std::make_unique<CenterOfMass>(robot, point, reference);
+                        }};
+      },
+      nb::kw_only(), "target"_a, "reference"_a = Exponential{},
+      "Brings the robot's centre of mass to a point [m], or to where a function t -> (point, velocity) moves "
+      "it.");
+  module.def(
+      "SelectedRows",
+      [](const TaskSpec& task, const std::vector<int>& rows) {
+        return TaskSpec{task.type, [=](const Robot& robot) {
+                          return std::make_unique<SelectedRows>(*task.make(robot), rows);
+                        }};
+      },
+      "task"_a, nb::kw_only(), "rows"_a,
+      "A task with some of its rows alone, counted from 0: 2 is the height of a position.");
+  module.def(
       "Posture",
       [](const nb::object& target, const Reference& reference) {
-        return TaskSpec{"posture", [=, posture = numbers_from<Vector>(target, "a list of joint positions")](
-                                       const Robot& robot) {
-                          return std::make_unique<Posture>(robot, posture, reference);
-                        }};
+        return TaskSpec{
+            "posture",
+            [=, posture = numbers_from<Vector>(target, "target", "a list of joint positions")](
+                const Robot& robot) { return std::make_unique<Posture>(robot, posture, reference); }};
       },
       nb::kw_only(), "target"_a, "reference"_a = Exponential{}, "Draws all joints towards a posture (nq).");
   module.def(

@@ -94,6 +94,21 @@ def FrameOrientation(*, frame: str, target: object, reference: Exponential | Pre
 def FramePose(*, frame: str, position: object, rotation: object, reference: Exponential | PredefinedTime = ...) -> Task:
     """Position and orientation of a frame as one task of six rows."""
 
+def Pointing(*, frame: str, axis: object, target: object, reference: Exponential | PredefinedTime = ...) -> Task:
+    """
+    Points an axis of a frame, given along the frame's axes, at a point [m], or at where a function t -> (point, velocity) moves it.
+    """
+
+def CenterOfMass(*, target: object, reference: Exponential | PredefinedTime = ...) -> Task:
+    """
+    Brings the robot's centre of mass to a point [m], or to where a function t -> (point, velocity) moves it.
+    """
+
+def SelectedRows(task: Task, *, rows: Sequence[int]) -> Task:
+    """
+    A task with some of its rows alone, counted from 0: 2 is the height of a position.
+    """
+
 def Posture(*, target: object, reference: Exponential | PredefinedTime = ...) -> Task:
     """Draws all joints towards a posture (nq)."""
 

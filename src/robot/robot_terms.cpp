@@ -2,6 +2,7 @@
 
 #include <tope/robot/robot_terms.hpp>
 
+#include <pinocchio/algorithm/center-of-mass.hpp>
 #include <pinocchio/algorithm/crba.hpp>
 #include <pinocchio/algorithm/frames.hpp>
 #include <pinocchio/algorithm/jacobian.hpp>
@@ -35,11 +36,27 @@ struct RobotTerms::Scratch {
     selected = index;
   }
 
+  /// Makes `data.com`, `data.mass` and `data.Jcom` those of the state.
+  void find_centre_of_mass() {
+    if (!com_is_known) {
+      pinocchio::jacobianCenterOfMass(model(), data, false);
+      com_is_known = true;
+    }
+  }
+
+  void set_state(const VectorArg& position, const VectorArg& velocity) {
+    q = position;
+    v = velocity;
+    selected = -1;
+    com_is_known = false;
+  }
+
   Robot robot;  // keeps the shared model alive
   pinocchio::Data data;
   Vector q;
   Vector v;
   Matrix mass_matrix;
+  bool com_is_known = false;
   int selected = -1;
   pinocchio::SE3 world_T_frame;
   Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian;
@@ -53,17 +70,13 @@ RobotTerms::RobotTerms(RobotTerms&&) noexcept = default;
 RobotTerms& RobotTerms::operator=(RobotTerms&&) noexcept = default;
 
 void RobotTerms::update(const VectorArg& q, const VectorArg& v) {
-  scratch_->q = q;
-  scratch_->v = v;
-  scratch_->selected = -1;
+  scratch_->set_state(q, v);
   pinocchio::computeJointJacobians(scratch_->model(), scratch_->data, scratch_->q);
 }
 
 void RobotTerms::update_dynamics(const VectorArg& q, const VectorArg& v) {
   Scratch& s = *scratch_;
-  s.q = q;
-  s.v = v;
-  s.selected = -1;
+  s.set_state(q, v);
   pinocchio::crba(s.model(), s.data, s.q, pinocchio::Convention::WORLD);  // and the joint Jacobians
   s.mass_matrix = s.data.M.selfadjointView<Eigen::Upper>();  // crba fills the upper triangle alone
   pinocchio::nonLinearEffects(s.model(), s.data, s.q, s.v);
@@ -87,6 +100,27 @@ Eigen::Matrix<double, 6, 1> RobotTerms::frame_drift(int frame) const {
   drift.head<3>() = rotation * (acceleration.linear() + velocity.angular().cross(velocity.linear()));
   drift.tail<3>() = rotation * acceleration.angular();
   return drift;
+}
+
+Vector3 RobotTerms::com_drift() const {
+  Scratch& s = *scratch_;
+  s.find_centre_of_mass();
+  // f of nonLinearEffects is what carries each joint's subtree if no joint accelerates; the trees stand on joint 0
+  Vector3 carried = Vector3::Zero();
+  for (const pinocchio::JointIndex joint : s.model().children[0]) {
+    carried += s.data.oMi[joint].rotation() * s.data.f[joint].linear();
+  }
+  return carried / s.data.mass[0] + s.model().gravity.linear();
+}
+
+Vector3 RobotTerms::com_position() const {
+  scratch_->find_centre_of_mass();
+  return scratch_->data.com[0];
+}
+
+const Eigen::Matrix<double, 3, Eigen::Dynamic>& RobotTerms::com_jacobian() const {
+  scratch_->find_centre_of_mass();
+  return scratch_->data.Jcom;
 }
 
 const Vector& RobotTerms::position() const { return scratch_->q; }

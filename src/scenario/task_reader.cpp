@@ -1,12 +1,15 @@
 #include "task_reader.hpp"
 
 #include <tope/common/names.hpp>
+#include <tope/task/center_of_mass.hpp>
 #include <tope/task/damping.hpp>
 #include <tope/task/frame_orientation.hpp>
 #include <tope/task/frame_pose.hpp>
 #include <tope/task/frame_position.hpp>
 #include <tope/task/joint_position.hpp>
+#include <tope/task/pointing.hpp>
 #include <tope/task/posture.hpp>
+#include <tope/task/selected_rows.hpp>
 
 #include <Eigen/Geometry>
 
@@ -94,6 +97,21 @@ std::shared_ptr<const Task> read_pose(const YamlReader& yaml, const Robot& robot
   return task;
 }
 
+std::shared_ptr<const Task> read_pointing(const YamlReader& yaml, const Robot& robot) {
+  const YamlReader target = yaml.map("target");
+  auto task = std::make_shared<Pointing>(robot, yaml.text("frame"), Vector3(yaml.vector("axis", 3)),
+                                         read_point(target), read_reference(yaml));
+  target.finish();
+  return task;
+}
+
+std::shared_ptr<const Task> read_center_of_mass(const YamlReader& yaml, const Robot& robot) {
+  const YamlReader target = yaml.map("target");
+  auto task = std::make_shared<CenterOfMass>(robot, read_point(target), read_reference(yaml));
+  target.finish();
+  return task;
+}
+
 std::shared_ptr<const Task> read_posture(const YamlReader& yaml, const Robot& robot) {
   return std::make_shared<Posture>(robot, yaml.vector("target", robot.nq()), read_reference(yaml));
 }
@@ -112,6 +130,7 @@ const std::vector<std::pair<std::string, TaskReader>>& task_readers() {
   static const std::vector<std::pair<std::string, TaskReader>> readers{
       {"frame_position", read_position}, {"frame_orientation", read_orientation}, {"frame_pose", read_pose},
       {"posture", read_posture},         {"joint_position", read_joints},         {"damping", read_damping},
+      {"pointing", read_pointing},       {"center_of_mass", read_center_of_mass},
   };
   return readers;
 }
@@ -128,8 +147,27 @@ std::shared_ptr<const Task> read_by_type(const YamlReader& yaml, const Robot& ro
   yaml.fail("type", "unknown task '" + type + "'" + name_hint(type, names));
 }
 
+/// Of any task, `rows` keeps those alone.
+std::shared_ptr<const Task> read_rows(const YamlReader& yaml, std::shared_ptr<const Task> task) {
+  if (!yaml.has("rows")) {
+    return task;
+  }
+  const Vector numbers = yaml.vector("rows", -1);
+  if ((numbers.array() != numbers.array().round()).any() || numbers.lpNorm<Eigen::Infinity>() > 1e6) {
+    yaml.fail("rows", "expected whole numbers, counted from 0");
+  }
+  const std::vector<int> rows(numbers.begin(), numbers.end());
+  return std::make_shared<SelectedRows>(*task, rows);
+}
+
 /// The key that an error of a task's constructor is about, as far as its words tell.
 std::string blamed_key(const YamlReader& yaml, const std::string& message) {
+  if (message.starts_with("SelectedRows")) {
+    return "rows";
+  }
+  if (message.starts_with("Pointing: axis")) {
+    return "axis";
+  }
   if (message.find("frame") != std::string::npos && yaml.has("frame")) {
     return "frame";
   }
@@ -146,7 +184,7 @@ ScenarioTask read_task(const YamlReader& yaml, const Robot& robot) {
     yaml.fail("level", "must be at least 1: limits are above all levels");
   }
   try {
-    task.task = read_by_type(yaml, robot);
+    task.task = read_rows(yaml, read_by_type(yaml, robot));
   } catch (const ConfigError& error) {
     const std::string message = error.what();
     if (message.starts_with(yaml.file().string()) || message.starts_with("--set")) {

@@ -55,12 +55,17 @@ void Task::update(const RobotTerms& terms, double t) {
   rate_ += feedforward_;
 }
 
-void Task::update_second_order(const RobotTerms& terms, double t, const Vector& acceleration) {
-  second_order_ = true;
-  evaluate(terms, t);
+/// Error rate and drift, after evaluate().
+void Task::find_drift(const RobotTerms& terms, double t) {
   error_rate_ = -feedforward_;
   error_rate_.noalias() += jacobian_ * terms.velocity();
   evaluate_drift(terms, t);
+}
+
+void Task::update_second_order(const RobotTerms& terms, double t, const Vector& acceleration) {
+  second_order_ = true;
+  evaluate(terms, t);
+  find_drift(terms, t);
   if (started_) {
     acceleration_ += drift_;  // what the error was asked to do last
   } else {

@@ -159,6 +159,27 @@ BOOST_AUTO_TEST_CASE(wrong_values_are_refused) {
   check_refused("youbot.yaml", "youbt.yaml", {"youbt.yaml: no such file"});
 }
 
+BOOST_AUTO_TEST_CASE(tasks_point_move_the_centre_of_mass_and_keep_rows) {
+  const std::string old =
+      "type: frame_position\n    level: 2\n    frame: ee\n    target: {position: [0.5, 0.1, 0.1]}";
+  const auto tasks_of = [&](const std::string& task) {
+    const TemporaryFile file("scenario.yaml", replaced(good_scenario(), old, task));
+    return Scenario::load(file.path()).tasks;
+  };
+  const std::string pointing =
+      "type: pointing\n    level: 2\n    frame: ee\n    axis: [0, 0, 1]\n    target: {position: [5, 1, 1]}";
+  const std::string com =
+      "type: center_of_mass\n    level: 2\n    target: {position: [0, 0, 0.1]}\n    rows: [0, 1]";
+  BOOST_TEST(tasks_of(pointing)[1].task->type() == "pointing");
+  BOOST_TEST(tasks_of(com)[1].task->type() == "center_of_mass");
+  BOOST_TEST(tasks_of(com)[1].task->size() == 2);
+  check_refused(old, replaced(pointing, "[0, 0, 1]", "[0, 0, 0]"),
+                {":24: tasks.1.axis: Pointing: axis", "must not be zero"});
+  check_refused(old, replaced(com, "[0, 1]", "[0, 3]"), {":24: tasks.1.rows", "row 3", "rows 0 to 2"});
+  check_refused(old, replaced(com, "[0, 1]", "[0, 0]"), {":24: tasks.1.rows", "row 0 is named twice"});
+  check_refused(old, replaced(com, "[0, 1]", "[0.5]"), {":24: tasks.1.rows: expected whole numbers"});
+}
+
 BOOST_AUTO_TEST_CASE(limit_servo_takes_one_pair_of_gains) {
   const TemporaryFile file("scenario.yaml",
                            replaced(good_scenario(), "buffer: 0.12", "lambda_p: 80\n  lambda_v: 24"));

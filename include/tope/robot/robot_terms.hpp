@@ -36,6 +36,11 @@ class RobotTerms {
   /// The same without a copy, until the next update() or another frame is asked for.
   const Eigen::Matrix<double, 6, Eigen::Dynamic>& frame_jacobian(int frame) const;
 
+  /// The robot's centre of mass in the world [m] and the Jacobian (3 x nv) of its velocity. Computed when first asked
+  /// for after an update; not a number for a robot without mass.
+  Vector3 com_position() const;
+  const Eigen::Matrix<double, 3, Eigen::Dynamic>& com_jacobian() const;
+
   /// What follows needs update_dynamics().
   /// H (nv x nv), symmetric, rotor inertia included [kg, kg m, kg m2].
   const Matrix& mass_matrix() const;
@@ -44,6 +49,8 @@ class RobotTerms {
   /// Jdot v of a frame (6), in the order and along the axes of frame_jacobian(): the acceleration that it would have if
   /// no joint accelerated.
   Eigen::Matrix<double, 6, 1> frame_drift(int frame) const;
+  /// The same for the centre of mass [m/s2].
+  Vector3 com_drift() const;
 
  private:
   struct Scratch;

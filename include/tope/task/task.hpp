@@ -65,6 +65,7 @@ class Task {
   const Vector& drift() const { return drift_; }
   /// Seconds from start to promised arrival, if the reference promises one.
   std::optional<double> duration() const;
+  const Reference& reference() const { return reference_; }
   /// Gain of the reference [1/s].
   double gain() const;
   /// True when a rotation error lies within 0.05 rad of pi, where its direction is about to flip.
@@ -86,6 +87,13 @@ class Task {
   virtual void evaluate(const RobotTerms& terms, double t) = 0;
   /// Fills drift_, after evaluate() and error_rate_. Tasks whose Jacobian and target stand still have none.
   virtual void evaluate_drift(const RobotTerms& /*terms*/, double /*t*/) {}
+  /// For a task made of another: evaluates that one without its reference; then, if needed, its error_rate() and
+  /// drift().
+  static void evaluate_part(Task& part, const RobotTerms& terms, double t) { part.evaluate(terms, t); }
+  static void evaluate_part_drift(Task& part, const RobotTerms& terms, double t) {
+    part.find_drift(terms, t);
+  }
+  static const Vector& feedforward_of(const Task& part) { return part.feedforward_; }
 
   Vector error_;
   Matrix jacobian_;
@@ -95,6 +103,7 @@ class Task {
   bool near_flip_ = false;
 
  private:
+  void find_drift(const RobotTerms& terms, double t);
   void start_reference(double t, const Vector& rate, const Vector& acceleration);
   bool replans() const;
 
