@@ -166,6 +166,16 @@ class Controller:
     def remove(self, handle: TaskHandle, *, over: float = 0.0) -> None:
         """Removes a task; `over` seconds let it fade out."""
 
+    def move(self, handle: TaskHandle, *, level: int, over: float = 0.0) -> None:
+        """
+        Moves a task to another level, in `over` seconds; it is complete all the while.
+        """
+
+    def replace(self, handle: TaskHandle, task: Task, *, over: float = 0.0) -> None:
+        """
+        Puts another task in the place of one, in `over` seconds: with another target for example.
+        """
+
     def move_limits(self, joint: str, *, lower: float, upper: float, lower_rate: float = 0.0, upper_rate: float = 0.0) -> None:
         """
         Moves a joint's limits [rad or m] from the next update on; the rates [rad/s or m/s] say how they go on.

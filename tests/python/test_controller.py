@@ -190,3 +190,28 @@ def test_errors_quote_what_is_no_text(tmp_path: Path) -> None:
     file.write_bytes(b"*\xff\xff\n")
     with pytest.raises(tope.ConfigError, match=r"broken\.yaml:1: not YAML: .*\\xff"):
         tope.load_scenario(file)
+
+
+def test_a_task_moves_to_another_level_and_is_replaced_without_a_jump(robot):
+    dt = 1e-3
+    c = controller(robot)
+    c.add(tope.FrameOrientation(frame="ee", target=[0.0397, 0.9811, 0.1867, -0.0322]), level=2)
+    reach = c.add(tope.FramePosition(frame="ee", target=[0.6, 0.1, 0.1]), level=3)
+    q, v, t = Q0.copy(), np.zeros(robot.nv), 0.0
+    jumps = []
+    for cycle in range(700):
+        if cycle == 100:
+            c.move(reach, level=1, over=0.2)
+        if cycle == 200:  # before it has arrived
+            c.replace(reach, tope.FramePosition(frame="ee", target=[0.5, -0.1, 0.2]), over=0.3)
+        u = c.update(q, v, t)
+        jumps.append(np.max(np.abs(u - v) / robot.velocity_limit))
+        q, v, t = q + dt * u, u, t + dt
+    assert max(jumps[1:]) < 0.02
+    position, jacobian = frame_terms(q)
+    np.testing.assert_allclose(jacobian @ v, -2.0 * (position - [0.5, -0.1, 0.2]), atol=2e-3)
+    with pytest.raises(tope.Error, match="no task with handle"):
+        c.remove(reach, over=0.0)
+        c.update(q, v, t)
+        c.add(tope.Damping(), level=4)
+        c.move(reach, level=2)
