@@ -142,11 +142,9 @@ std::vector<Condition> Controller::conditions() const {
 TaskHandle Controller::add(int level, const Task& task, const TransitionOptions& options) {
   require_level(level);
   require_transition(options);
-  check_task(task);
+  std::unique_ptr<Task> copy = fresh_copy(task);
   const TaskHandle handle{next_id_++};
-  Entry added{.id = handle.id, .generation = 0, .level = level, .task = task.clone()};
-  added.task->restart();
-  insert(std::move(added), options);
+  insert({.id = handle.id, .generation = 0, .level = level, .task = std::move(copy)}, options);
   return handle;
 }
 
@@ -170,19 +168,22 @@ void Controller::move(TaskHandle handle, int level, const TransitionOptions& opt
 
 void Controller::replace(TaskHandle handle, const Task& task, const TransitionOptions& options) {
   require_transition(options);
-  check_task(task);
+  std::unique_ptr<Task> copy = fresh_copy(task);
   const Entry& old = staying(handle);
-  Entry added{.id = old.id, .generation = old.generation + 1, .level = old.level, .task = task.clone()};
-  added.task->restart();
-  insert(std::move(added), options);
+  insert({.id = old.id, .generation = old.generation + 1, .level = old.level, .task = std::move(copy)},
+         options);
 }
 
-void Controller::check_task(const Task& task) const {
+/// A copy whose reference starts with the next update.
+std::unique_ptr<Task> Controller::fresh_copy(const Task& task) const {
   if (task.jacobian().cols() != robot_.nv()) {
     throw ConfigError("task " + std::string(task.type()) + " was made for a robot with " +
                       std::to_string(task.jacobian().cols()) + " degrees of freedom, this one has " +
                       std::to_string(robot_.nv()));
   }
+  std::unique_ptr<Task> copy = task.clone();
+  copy->restart();
+  return copy;
 }
 
 /// Lets an entry appear, behind those of its level.

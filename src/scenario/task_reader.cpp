@@ -53,6 +53,14 @@ Target<PointTarget> read_point(const YamlReader& yaml) {
   return PointTarget{.position = position};
 }
 
+/// The target of a task that is about a point alone.
+Target<PointTarget> read_point_target(const YamlReader& yaml) {
+  const YamlReader target = yaml.map("target");
+  Target<PointTarget> point = read_point(target);
+  target.finish();
+  return point;
+}
+
 /// Quaternions are given in a few digits and normalised; one that is not nearly of unit length is a mistake.
 Matrix3 read_quaternion(const YamlReader& yaml) {
   const Vector wxyz = yaml.vector("quaternion", 4);
@@ -74,11 +82,8 @@ Target<RotationTarget> read_rotation(const YamlReader& yaml) {
 using TaskReader = std::function<std::shared_ptr<const Task>(const YamlReader&, const Robot&)>;
 
 std::shared_ptr<const Task> read_position(const YamlReader& yaml, const Robot& robot) {
-  const YamlReader target = yaml.map("target");
-  auto task =
-      std::make_shared<FramePosition>(robot, yaml.text("frame"), read_point(target), read_reference(yaml));
-  target.finish();
-  return task;
+  return std::make_shared<FramePosition>(robot, yaml.text("frame"), read_point_target(yaml),
+                                         read_reference(yaml));
 }
 
 std::shared_ptr<const Task> read_orientation(const YamlReader& yaml, const Robot& robot) {
@@ -98,18 +103,12 @@ std::shared_ptr<const Task> read_pose(const YamlReader& yaml, const Robot& robot
 }
 
 std::shared_ptr<const Task> read_pointing(const YamlReader& yaml, const Robot& robot) {
-  const YamlReader target = yaml.map("target");
-  auto task = std::make_shared<Pointing>(robot, yaml.text("frame"), Vector3(yaml.vector("axis", 3)),
-                                         read_point(target), read_reference(yaml));
-  target.finish();
-  return task;
+  return std::make_shared<Pointing>(robot, yaml.text("frame"), Vector3(yaml.vector("axis", 3)),
+                                    read_point_target(yaml), read_reference(yaml));
 }
 
 std::shared_ptr<const Task> read_center_of_mass(const YamlReader& yaml, const Robot& robot) {
-  const YamlReader target = yaml.map("target");
-  auto task = std::make_shared<CenterOfMass>(robot, read_point(target), read_reference(yaml));
-  target.finish();
-  return task;
+  return std::make_shared<CenterOfMass>(robot, read_point_target(yaml), read_reference(yaml));
 }
 
 std::shared_ptr<const Task> read_posture(const YamlReader& yaml, const Robot& robot) {

@@ -1,5 +1,7 @@
 #include "orientation_rows.hpp"
 
+#include "near_flip.hpp"
+
 #include <tope/task/rotation_error.hpp>
 
 #include <Eigen/Geometry>
@@ -19,7 +21,7 @@ bool fill_orientation_rows(const Matrix3& rotation, const Eigen::Ref<const Matri
     jacobian.col(j).head<3>() = world_to_error * angular_jacobian.col(j).head<3>();
   }
   feedforward.head<3>() = world_to_error * target.angular_velocity;
-  return e.angle > std::numbers::pi - 0.05;
+  return e.angle > std::numbers::pi - kNearFlip;
 }
 
 Vector3 orientation_drift(const RotationTarget& frame, const RotationTarget& target, const Vector3& error,

@@ -1,3 +1,4 @@
+#include "near_flip.hpp"
 #include "target_checks.hpp"
 
 #include <tope/common/error.hpp>
@@ -13,8 +14,7 @@
 namespace tope {
 namespace {
 
-constexpr double kNearFlip = 0.05;  // of pi [rad]
-constexpr double kFlip = 0.01;      // of pi [rad]: a direction nearer to it is taken to be this far off
+constexpr double kFlip = 0.01;  // of pi [rad]: a direction nearer to it is taken to be this far off
 constexpr double kSmallestDistance = 1e-3;  // [m]
 
 using Matrix23 = Eigen::Matrix<double, 2, 3>;

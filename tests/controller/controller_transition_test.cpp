@@ -5,7 +5,6 @@
 #include "support/robots.hpp"
 #include "support/text.hpp"
 
-#include <tope/plant/rigid_body.hpp>
 #include <tope/task/damping.hpp>
 #include <tope/task/frame_orientation.hpp>
 #include <tope/task/frame_position.hpp>
@@ -15,26 +14,37 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace tope::test {
 namespace {
 
-/// Largest change of a command between cycles, over the joint's bound, while tasks come, overlap and go.
+/// Watches the largest change of a command between cycles, over each joint's bound.
+struct Jump {
+  explicit Jump(const Loop& watched) : loop(watched) {}
+
+  void operator()() {
+    const Vector& bound = loop.body ? loop.robot.effort_limit() : loop.robot.velocity_limit();
+    if (last.size() > 0) {
+      largest = std::max(largest, (loop.u - last).cwiseQuotient(bound).cwiseAbs().maxCoeff());
+    }
+    last = loop.u;
+  }
+
+  const Loop& loop;
+  Vector last;
+  double largest = 0.0;
+};
+
+/// While tasks come, overlap and go.
 double largest_jump(LimitMethod method, int seed, double dt) {
   Random random(seed);
   Loop loop(youbot_before_obstacle(), {.dt = dt, .limits = {.method = method}});
   const FramePosition reach(loop.robot, "ee", Vector3(0.5, 0.1, 0.2) + Vector3(random.vector(3, 0.1)));
   const FrameOrientation turn(loop.robot, "ee", random.rotation());
   const Posture rest(loop.robot, random_position(random, loop.robot, 0.3));
-  double jump = 0.0;
-  Vector last;
-  const auto observe = [&] {
-    if (last.size() > 0) {
-      jump =
-          std::max(jump, ((loop.u - last).cwiseQuotient(loop.robot.velocity_limit())).cwiseAbs().maxCoeff());
-    }
-    last = loop.u;
-  };
+  Jump jump(loop);
+  const auto observe = std::ref(jump);
   const TaskHandle posture = loop.controller.add(3, rest);
   const TaskHandle first = loop.controller.add(1, reach);
   loop.run(0.1, observe);
@@ -47,79 +57,43 @@ double largest_jump(LimitMethod method, int seed, double dt) {
   loop.controller.add(1, turn, {.over = 0.2});
   loop.controller.remove(first, {.over = 0.3});
   loop.run(0.4, observe);
-  return jump;
+  return jump.largest;
 }
 
-/// A robot that moves as it is told, in either mode.
-struct Body {
-  Body(Random& random, LimitMethod method, Mode mode, double dt)
-      : robot(youbot_before_obstacle()),
-        controller(robot, {.mode = mode, .dt = dt, .limits = {.method = method}}),
-        reach(robot, "ee", Vector3(0.5, 0.1, 0.2) + Vector3(random.vector(3, 0.1))),
+struct Tasks {
+  Tasks(Random& random, const Robot& robot)
+      : reach(robot, "ee", Vector3(0.5, 0.1, 0.2) + Vector3(random.vector(3, 0.1))),
         again(robot, "ee", Vector3(0.4, -0.1, 0.3) + Vector3(random.vector(3, 0.1))),
         turn(robot, "ee", random.rotation()),
-        rest(robot, random_position(random, robot, 0.3)),
-        plant(robot, {}, dt),
-        q(Vector::Zero(8)) {
-    q << 0.0, 0.0, 0.0, 0.0, 0.4, 0.9, 0.6, 1.8;
-    plant.reset(q);
-  }
+        rest(robot, random_position(random, robot, 0.3)) {}
 
-  void run(double duration) {
-    const bool torque = controller.options().mode == Mode::torque;
-    const double dt = controller.options().dt;
-    const Vector& bound = torque ? robot.effort_limit() : robot.velocity_limit();
-    for (auto cycles = std::lround(duration / dt); cycles > 0; --cycles) {
-      last = u;
-      controller.update(q, v, t, u);
-      if (t > 0.0) {
-        jump = std::max(jump, (u - last).cwiseQuotient(bound).cwiseAbs().maxCoeff());
-      }
-      t += dt;
-      if (torque) {
-        plant.step(u, dt);
-        q = plant.position();
-        v = plant.velocity();
-      } else {
-        v = u;
-        q += dt * u;
-      }
-    }
-  }
-
-  Robot robot;
-  Controller controller;
   FramePosition reach;
   FramePosition again;
   FrameOrientation turn;
   Posture rest;
-  RigidBody plant;
-  Vector q;
-  Vector v = Vector::Zero(8);
-  Vector u = Vector::Zero(8);
-  Vector last;
-  double t = 0.0;
-  double jump = 0.0;
 };
 
-/// Largest change of a command between cycles, over the joint's bound, while levels and targets change.
+/// While levels and targets change.
 double largest_jump_of_changes(LimitMethod method, Mode mode, int seed, double dt) {
   Random random(seed);
-  Body body(random, method, mode, dt);
-  Controller& controller = body.controller;
-  const TaskHandle turn = controller.add(1, body.turn);
-  const TaskHandle reach = controller.add(2, body.reach);
-  controller.add(4, body.rest);
-  body.run(0.1);
+  Loop loop(youbot_before_obstacle(), {.mode = mode, .dt = dt, .limits = {.method = method}});
+  const Tasks tasks(random, loop.robot);
+  Controller& controller = loop.controller;
+  Jump jump(loop);
+  const auto observe = std::ref(jump);
+  const TaskHandle turn = controller.add(1, tasks.turn);
+  const TaskHandle reach = controller.add(2, tasks.reach);
+  controller.add(4, tasks.rest);
+  loop.run(0.1, observe);
   controller.move(reach, 1, {.over = 0.2});
   controller.move(turn, 3, {.over = 0.3});
-  body.run(0.1);
+  loop.run(0.1, observe);
   controller.move(turn, 2, {.over = 0.2});  // before it has arrived
-  controller.replace(reach, body.again, {.over = 0.2});
-  body.run(0.15);
+  controller.replace(reach, tasks.again, {.over = 0.2});
+  loop.run(0.15, observe);
   controller.remove(turn, {.over = 0.2});  // while it moves
-  body.run(0.3);
-  return body.jump;
+  loop.run(0.3, observe);
+  return jump.largest;
 }
 
 }  // namespace
@@ -170,30 +144,31 @@ BOOST_AUTO_TEST_CASE(both_ends_of_a_change_are_exact) {
   for (const Mode mode : {Mode::velocity, Mode::torque}) {
     for (const LimitMethod method : {LimitMethod::unilateral, LimitMethod::chain}) {
       Random random(3);
-      Body body(random, method, mode, 1e-3);
+      Loop loop(youbot_before_obstacle(), {.mode = mode, .limits = {.method = method}});
+      const Tasks tasks(random, loop.robot);
       const auto fresh_command = [&](int turn_level, int reach_level, const Task& reach) {
-        Controller fresh(body.robot, body.controller.options());
-        fresh.add(turn_level, body.turn);
+        Controller fresh(loop.robot, loop.controller.options());
+        fresh.add(turn_level, tasks.turn);
         fresh.add(reach_level, reach);
         Vector expected(8);
-        fresh.update(body.q, body.v, body.t, expected);
+        fresh.update(loop.q, loop.v, loop.t, expected);
         return expected;
       };
       const auto difference = [&](const Vector& expected) {
-        body.controller.update(body.q, body.v, body.t, body.u);
-        return (body.u - expected).cwiseAbs().maxCoeff();
+        loop.controller.update(loop.q, loop.v, loop.t, loop.u);
+        return (loop.u - expected).cwiseAbs().maxCoeff();
       };
-      const TaskHandle turn = body.controller.add(1, body.turn);
-      const TaskHandle reach = body.controller.add(2, body.reach);
-      body.run(0.05);
-      body.controller.move(turn, 3, {.over = 0.1});
-      body.controller.replace(reach, body.again, {.over = 0.1});
-      BOOST_TEST(difference(fresh_command(1, 2, body.reach)) <= 1e-9);
-      body.run(0.05);
-      BOOST_TEST(difference(fresh_command(1, 2, body.reach)) > 1e-3);
-      BOOST_TEST(difference(fresh_command(3, 2, body.again)) > 1e-3);
-      body.run(0.06);
-      BOOST_TEST(difference(fresh_command(3, 2, body.again)) <= 1e-9);
+      const TaskHandle turn = loop.controller.add(1, tasks.turn);
+      const TaskHandle reach = loop.controller.add(2, tasks.reach);
+      loop.run(0.05);
+      loop.controller.move(turn, 3, {.over = 0.1});
+      loop.controller.replace(reach, tasks.again, {.over = 0.1});
+      BOOST_TEST(difference(fresh_command(1, 2, tasks.reach)) <= 1e-9);
+      loop.run(0.05);
+      BOOST_TEST(difference(fresh_command(1, 2, tasks.reach)) > 1e-3);
+      BOOST_TEST(difference(fresh_command(3, 2, tasks.again)) > 1e-3);
+      loop.run(0.06);
+      BOOST_TEST(difference(fresh_command(3, 2, tasks.again)) <= 1e-9);
     }
   }
 }

@@ -15,12 +15,23 @@ def frames(positions: Mapping[str, float]) -> dict[str, pinocchio.SE3]:
     """The placement of every frame at joint positions; joints that are not named are at 0."""
     model = pinocchio.buildModelFromUrdf(str(URDF))
     data = model.createData()
+    pinocchio.framesForwardKinematics(model, data, configuration(model, positions))
+    return {frame.name: data.oMf[i] for i, frame in enumerate(model.frames)}
+
+
+def centre_of_mass(positions: Mapping[str, float]) -> np.ndarray:
+    """Of all links, at joint positions [m]."""
+    model = pinocchio.buildModelFromUrdf(str(URDF))
+    return pinocchio.centerOfMass(model, model.createData(), configuration(model, positions))
+
+
+def configuration(model: pinocchio.Model, positions: Mapping[str, float]) -> np.ndarray:
+    """Pinocchio's q, with cosine and sine for a continuous joint."""
     q = pinocchio.neutral(model)
     for name, value in positions.items():
         joint = model.joints[model.getJointId(name)]
         q[joint.idx_q : joint.idx_q + joint.nq] = [np.cos(value), np.sin(value)] if joint.nq == 2 else value
-    pinocchio.framesForwardKinematics(model, data, q)
-    return {frame.name: data.oMf[i] for i, frame in enumerate(model.frames)}
+    return q
 
 
 def placement(position: list[float], xyzw: list[float]) -> pinocchio.SE3:

@@ -210,8 +210,8 @@ def test_a_task_moves_to_another_level_and_is_replaced_without_a_jump(robot):
     assert max(jumps[1:]) < 0.02
     position, jacobian = frame_terms(q)
     np.testing.assert_allclose(jacobian @ v, -2.0 * (position - [0.5, -0.1, 0.2]), atol=2e-3)
+    c.remove(reach, over=0.0)
+    c.update(q, v, t)
+    c.add(tope.Damping(), level=4)
     with pytest.raises(tope.Error, match="no task with handle"):
-        c.remove(reach, over=0.0)
-        c.update(q, v, t)
-        c.add(tope.Damping(), level=4)
         c.move(reach, level=2)

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import kinematics
 import numpy as np
-import pinocchio as pin
 import pytest
 
 import tope
@@ -33,32 +32,26 @@ def reached(robot: tope.Robot, task: tope.Task) -> np.ndarray:
     return q
 
 
-def centre_of_mass(robot: tope.Robot, q: np.ndarray) -> np.ndarray:
-    model = pin.buildModelFromUrdf(str(kinematics.URDF))
-    configuration = pin.neutral(model)
-    for name, value in zip(robot.joint_names, q, strict=True):
-        joint = model.joints[model.getJointId(name)]
-        entry = [np.cos(value), np.sin(value)] if joint.nq == 2 else value
-        configuration[joint.idx_q : joint.idx_q + joint.nq] = entry
-    return pin.centerOfMass(model, model.createData(), configuration)
+def named(robot: tope.Robot, q: np.ndarray) -> dict[str, float]:
+    return dict(zip(robot.joint_names, q, strict=True))
 
 
 def test_axis_points_at_the_point(robot: tope.Robot) -> None:
     q = reached(robot, tope.Pointing(frame="ee", axis=[0, 0, 2], target=POINT))
-    ee = kinematics.frames(dict(zip(robot.joint_names, q, strict=True)))["ee"]
+    ee = kinematics.frames(named(robot, q))["ee"]
     sight = POINT - ee.translation
     assert ee.rotation[:, 2] == pytest.approx(sight / np.linalg.norm(sight), abs=1e-3)
 
 
 def test_centre_of_mass_is_pinocchios(robot: tope.Robot) -> None:
-    target = centre_of_mass(robot, Q0) + np.array([0.1, -0.05, 0.005])
+    target = kinematics.centre_of_mass(named(robot, Q0)) + np.array([0.1, -0.05, 0.005])
     q = reached(robot, tope.CenterOfMass(target=target))
-    assert centre_of_mass(robot, q) == pytest.approx(target, abs=1e-3)
+    assert kinematics.centre_of_mass(named(robot, q)) == pytest.approx(target, abs=1e-3)
 
 
 def test_rows_left_out_are_free(robot: tope.Robot) -> None:
     q = reached(robot, tope.SelectedRows(tope.FramePosition(frame="ee", target=[50, 50, 0.3]), rows=[2]))
-    height = kinematics.frames(dict(zip(robot.joint_names, q, strict=True)))["ee"].translation[2]
+    height = kinematics.frames(named(robot, q))["ee"].translation[2]
     assert height == pytest.approx(0.3, abs=1e-3)
     assert q[:3] == pytest.approx(Q0[:3], abs=1e-9)
 

@@ -1,23 +1,44 @@
 #pragma once
 
 #include <tope/controller/controller.hpp>
+#include <tope/plant/rigid_body.hpp>
 
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace tope::test {
 
-/// A controller and a robot that follows its velocity commands exactly.
+/// A controller and a robot that follows its velocity commands exactly, or a rigid body under its torques.
 struct Loop {
   Loop(Robot described, const ControllerOptions& options)
       : robot(std::move(described)), controller(robot, options) {
     q << 0.0, 0.0, 0.0, 0.0, 0.4, 0.9, 0.6, 1.8;
+    if (options.mode == Mode::torque) {
+      body.emplace(robot, RigidBodyOptions{}, options.dt);
+      body->reset(q);
+    }
   }
 
   void step() {
-    controller.update(q, u, t, u);
-    q += controller.options().dt * u;
-    t += controller.options().dt;
+    command();
+    follow();
+  }
+
+  void command() { controller.update(q, v, t, u); }
+
+  /// Moves the robot; a rigid body may touch the heap.
+  void follow() {
+    const double dt = controller.options().dt;
+    if (body) {
+      body->step(u, dt);
+      q = body->position();
+      v = body->velocity();
+    } else {
+      q += dt * u;
+      v = u;
+    }
+    t += dt;
   }
 
   void run(double duration) {
@@ -40,7 +61,9 @@ struct Loop {
 
   Robot robot;
   Controller controller;
+  std::optional<RigidBody> body;  // in torque mode
   Vector q = Vector::Zero(8);
+  Vector v = Vector::Zero(8);
   Vector u = Vector::Zero(8);
   double t = 0.0;
 };

@@ -17,38 +17,23 @@
 namespace tope::test {
 namespace {
 
-/// Norm of the error that `task` has left at level 1 after `duration` of velocity mode.
+/// Norm of the error that `task` has left at level 1 after `duration`.
 double error_left(Loop& loop, const Task& task, double duration) {
   const TaskHandle handle = loop.controller.add(1, task);
-  {
-    const NoAllocation guard(std::string(task.type()));
-    loop.run(duration);
+  while (loop.t < duration) {
+    {
+      const NoAllocation guard(std::string(task.type()));
+      loop.command();
+    }
+    loop.follow();
   }
   return loop.controller.task(handle).error().norm();
 }
 
-/// The same in torque mode, of a robot that accelerates as commanded.
 double error_left_by_torques(const Task& task, double duration) {
-  const Robot robot = youbot();
-  constexpr double dt = 1e-3;
-  Controller controller(robot, {.mode = Mode::torque, .dt = dt});
-  const TaskHandle handle = controller.add(1, task);
-  controller.add(2, Damping(robot));
-  RobotTerms terms(robot);
-  Vector q = Loop(robot, {}).q;
-  Vector v = Vector::Zero(8);
-  Vector torque = v;
-  for (double t = 0.0; t < duration; t += dt) {
-    {
-      const NoAllocation guard(std::string(task.type()));
-      controller.update(q, v, t, torque);
-    }
-    terms.update_dynamics(q, v);
-    const Vector acceleration = terms.mass_matrix().llt().solve(torque - terms.bias());
-    q += dt * v + 0.5 * dt * dt * acceleration;
-    v += dt * acceleration;
-  }
-  return controller.task(handle).error().norm();
+  Loop loop(youbot(), {.mode = Mode::torque});
+  loop.controller.add(2, Damping(loop.robot));
+  return error_left(loop, task, duration);
 }
 
 }  // namespace

@@ -94,7 +94,7 @@ class Controller {
 
   const Entry& entry(TaskHandle handle) const;
   const Entry& staying(TaskHandle handle) const;
-  void check_task(const Task& task) const;
+  std::unique_ptr<Task> fresh_copy(const Task& task) const;
   void insert(Entry entry, const TransitionOptions& options);
   int replacement_row(const Entry& entry) const;
   bool replaced(std::size_t row) const;
