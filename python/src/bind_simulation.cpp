@@ -51,7 +51,9 @@ nb::dict describe_robot(const Scenario& scenario) {
   nb::dict entry;
   entry["name"] = scenario.robot->name();
   entry["urdf"] = scenario.urdf.string();
-  entry["locked_joints"] = nb::cast(scenario.locked_joints);
+  entry["locked_joints"] = nb::cast(scenario.robot->locked_joints());
+  const auto& base = scenario.robot->moving_base();
+  entry["base"] = base ? nb::cast(to_string(base->type)) : nb::none();
   return entry;
 }
 

@@ -102,7 +102,7 @@ class Campaign:
                 each for key, value in keys.items() for each in inside(value, key)
             )
             for key, joint in rule.keys(joints):
-                local = {} if joint is None else joint_figures(joint, drawn)
+                local = {} if joint is None else distributions.joint_figures(joint, drawn)
                 keys[key] = rule.distribution.draw(random, {**names, **local})
                 names.update(inside(keys[key], key))
 
@@ -139,11 +139,6 @@ def inside(value: Any, name: str) -> Iterator[tuple[str, Any]]:
     if isinstance(value, dict):
         for key, each in value.items():
             yield from inside(each, f"{name}.{key}")
-
-
-def joint_figures(name: str, names: Mapping[str, Any]) -> dict[str, float]:
-    """What formulas know of the joint that a pattern stands for: its limits as drawn, if they were."""
-    return {what: names[f"limits.joints.{name}.{what}"] for what in ("lower", "upper", "buffer", "bound")}
 
 
 def limits_of(joints: Mapping[str, Any]) -> dict[str, float]:

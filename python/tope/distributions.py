@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from fnmatch import fnmatchcase
 from typing import Any, Literal, Protocol
 
 import numpy as np
@@ -187,21 +188,40 @@ class Value:
 
 @dataclass(frozen=True)
 class PoseOf:
-    """Where a frame is at joint positions that are drawn, the others being at 0."""
+    """Where a frame is at joint positions that are drawn, the others being at 0; a `*` stands for joints."""
 
     scenario: str
     fixed: Mapping[str, Any]
     frame: str
-    joints: MapOf
+    joints: Mapping[str, Distribution]
 
     def draw(self, random: np.random.Generator, names: Names) -> Any:
         """Position and quaternion."""
-        return pose(self.scenario, self.fixed, self.frame, self.joints.draw(random, names))
+        drawn: dict[str, float] = {}
+        for pattern, each in self.joints.items():
+            if "*" in pattern:
+                for joint in (name for name in limited_joints(names) if fnmatchcase(name, pattern)):
+                    drawn[joint] = each.draw(random, {**names, **joint_figures(joint, names)})
+            else:
+                drawn[pattern] = each.draw(random, names)
+        return pose(self.scenario, self.fixed, self.frame, drawn)
 
     def leaves(self) -> Leaves:
         """Three and four numbers."""
         sizes = {"position": 3, "quaternion": 4}
         return {f"{what}.{i}": "number" for what, size in sizes.items() for i in range(size)}
+
+
+def limited_joints(names: Names) -> list[str]:
+    """The joints whose limits formulas know."""
+    return [
+        name.split(".")[2] for name in names if name.startswith("limits.joints.") and name.endswith(".lower")
+    ]
+
+
+def joint_figures(name: str, names: Names) -> dict[str, float]:
+    """What formulas know of the joint that a pattern stands for: its limits as drawn, if they were."""
+    return {what: names[f"limits.joints.{name}.{what}"] for what in ("lower", "upper", "buffer", "bound")}
 
 
 @dataclass(frozen=True)
@@ -331,7 +351,7 @@ def read_pose(entry: Entry, context: Context) -> Distribution:
     for key in ("frame", "joints"):
         if key not in entries:
             entry.fail(f"'{key}' is missing")
-    joints = MapOf({name: read(each, context) for name, each in entries["joints"].entries().items()})
+    joints = {name: read(each, context) for name, each in entries["joints"].entries().items()}
     return PoseOf(context.scenario, context.fixed, entries["frame"].text(), joints)
 
 

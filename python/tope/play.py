@@ -20,7 +20,7 @@ from tope.live_plots import LivePlots
 from tope.live_robot import LiveRobot
 from tope.scene import obstacles
 from tope.session import Session, State
-from tope.urdf import read_urdf
+from tope.urdf import robot_tree
 
 FRAME_RATE = 30.0  # of the scene [1/s]
 PLOT_EVERY = 4  # frames between points of the plots
@@ -34,7 +34,7 @@ class Page:
         """Errors: Error if the address cannot be served."""
         require_free(host, port)
         self.session = session
-        self.tree = read_urdf(session.scenario["robot"]["urdf"])
+        self.tree = robot_tree(session.scenario["robot"])
         with redirect_stdout(io.StringIO()):  # viser prints a banner, whatever it is told
             self.server = viser.ViserServer(host=host, port=port, label="tope", verbose=False)
         self.server.initial_camera.position = CAMERA

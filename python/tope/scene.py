@@ -10,7 +10,7 @@ import numpy as np
 
 from tope.panels import Array, float32
 from tope.runs import Run
-from tope.urdf import Joint, RobotTree, quaternions, read_urdf, rotations
+from tope.urdf import Joint, RobotTree, quaternions, robot_tree, rotations
 
 RATE = 100.0  # frames of the replay in a second, at most
 MOST_FRAMES = 3001  # of one run, so that the page of a long run stays small
@@ -29,7 +29,7 @@ class Goal:
 
 def read_tree(run: Run) -> RobotTree:
     """The robot of a run; raises Error if its URDF is gone."""
-    return read_urdf(run.scenario["robot"]["urdf"])
+    return robot_tree(run.scenario["robot"])
 
 
 def sampled(run: Run, columns: Sequence[str], times: Array) -> Array:
@@ -80,7 +80,7 @@ def scene(runs: Mapping[str, Run]) -> dict[str, Any] | None:
     )
     if not alike or any(len(run.time) == 0 for run in runs.values()):
         return None
-    tree = read_urdf(first["robot"]["urdf"])
+    tree = robot_tree(first["robot"])
     return {
         "joints": [joint["name"] for joint in first["joints"]],
         "links": [link_data(tree, link) for link in tree.links],

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import dataclasses
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
@@ -91,8 +93,13 @@ class RobotTree:
         return world
 
 
-def read_urdf(path: str | os.PathLike[str]) -> RobotTree:
-    """Read a URDF file; raises Error if it is missing or broken."""
+def robot_tree(robot: Mapping[str, Any]) -> RobotTree:
+    """The tree of a scenario's robot as `describe` tells of it; raises Error if its URDF is broken."""
+    return read_urdf(robot["urdf"], robot["base"])
+
+
+def read_urdf(path: str | os.PathLike[str], base: str | None = None) -> RobotTree:
+    """Read a URDF file; raises Error if it is missing or broken. A `base` (a key of BASES) moves its root."""
     path = Path(path)
     try:
         root = ElementTree.parse(path).getroot()
@@ -101,7 +108,8 @@ def read_urdf(path: str | os.PathLike[str]) -> RobotTree:
     except (OSError, ElementTree.ParseError) as error:
         raise _core.Error(f"{path}: cannot be read: {error}") from error
     try:
-        return tree_of(root)
+        tree = tree_of(root)
+        return tree if base is None else on_base(tree, base)
     except (KeyError, ValueError, StopIteration) as error:
         raise _core.Error(f"{path}: not a robot's URDF: {error!r}") from error
 
@@ -125,6 +133,32 @@ def tree_of(root: ElementTree.Element) -> RobotTree:
         joints=carried_order(top, list(joints.values())),
         visuals={link: [each for each in found if each is not None] for link, found in shapes.items()},
         meshes=sum(each is None for found in shapes.values() for each in found),
+    )
+
+
+# the joints that `base` in a robot's YAML file puts above the root: name, type, axis
+BASES = {
+    "planar": [("base_x", "prismatic", 0), ("base_y", "prismatic", 1), ("base_yaw", "continuous", 2)],
+    "floating": [
+        ("base_x", "prismatic", 0),
+        ("base_y", "prismatic", 1),
+        ("base_z", "prismatic", 2),
+        ("base_yaw", "continuous", 2),
+        ("base_pitch", "continuous", 1),
+        ("base_roll", "continuous", 0),
+    ],
+}
+
+
+def on_base(tree: RobotTree, base: str) -> RobotTree:
+    """The same robot with its root on a moving base."""
+    links = ["base_origin", *(f"{name}_link" for name, _, _ in BASES[base][:-1])]
+    joints = [
+        Joint(name, kind, parent, child, np.eye(4), np.eye(3)[axis], None, None)
+        for (name, kind, axis), parent, child in zip(BASES[base], links, [*links[1:], tree.root], strict=True)
+    ]
+    return dataclasses.replace(
+        tree, root=links[0], links=[*links, *tree.links], joints=[*joints, *tree.joints]
     )
 
 

@@ -134,7 +134,7 @@ Controller::Controller(const Robot& robot, const ControllerOptions& options)
 
 std::vector<Condition> Controller::conditions() const {
   const LimitMethod method = options_.limits.method;
-  const double headroom = options_.limits.unilateral.resolved(options_.mode).headroom;
+  const double headroom = options_.limits.unilateral.resolved(options_.mode, limits_).headroom;
   return torque_mode() ? torque_conditions(robot_, limits_, method, headroom, options_.dt, authority_)
                        : velocity_conditions(robot_, limits_, method, headroom, options_.dt);
 }
@@ -227,7 +227,7 @@ double Controller::activation(TaskHandle handle) const { return entry(handle).ac
 LawOptions Controller::law_options() const {
   return {.method = options_.limits.method,
           .hierarchy = options_.singularities,
-          .unilateral = options_.limits.unilateral.resolved(options_.mode)};
+          .unilateral = options_.limits.unilateral.resolved(options_.mode, limits_)};
 }
 
 /// Lays out the stack for the present entries and reserves the law's memory.

@@ -38,11 +38,21 @@ Condition buffer_is_wide(const Robot& robot, const JointLimits& limits, int join
                          " or lower dt to at most ", limits.buffer(joint) / (kappa * speed), " s")};
 }
 
+/// Least distance between the bounds that the unilateral law keeps a joint's motion in.
+double width_of_bounds(const JointLimits& limits, int joint) {
+  const double range = limits.upper()[joint] - limits.lower()[joint] - 2.0 * limits.options().margin;
+  return std::min(limits.gain() * range, 0.5 * limits.velocity_limit()[joint]);
+}
+
+double second_order_width_of_bounds(const JointLimits& limits, int joint) {
+  const double range = limits.upper()[joint] - limits.lower()[joint];
+  return limits.options().servo_gain * limits.allowed_speed(joint, 0.5 * range - limits.options().margin);
+}
+
 /// The tightened bounds of the unilateral law must leave an interior.
 Condition headroom_fits(const Robot& robot, const JointLimits& limits, int joint, double headroom) {
   const std::string& name = robot.joint_names()[static_cast<std::size_t>(joint)];
-  const double range = limits.upper()[joint] - limits.lower()[joint] - 2.0 * limits.options().margin;
-  const double width = std::min(limits.gain() * range, 0.5 * limits.velocity_limit()[joint]);
+  const double width = width_of_bounds(limits, joint);
   return {.name = "headroom inside the bounds",
           .joint = name,
           .expression = "2 * headroom <= min(gain * (range - 2 margin), v_max / 2)",
@@ -103,10 +113,10 @@ Condition second_order_buffer_is_wide(const Robot& robot, const JointLimits& lim
 Condition second_order_headroom_fits(const Robot& robot, const JointLimits& limits, int joint,
                                      double headroom) {
   const std::string& name = robot.joint_names()[static_cast<std::size_t>(joint)];
-  const double width = 0.5 * limits.options().servo_gain * limits.velocity_limit()[joint];
+  const double width = second_order_width_of_bounds(limits, joint);
   return {.name = "headroom inside the bounds",
           .joint = name,
-          .expression = "2 * headroom <= servo_gain * v_max / 2",
+          .expression = "2 * headroom <= servo_gain * V(range / 2 - margin)",
           .value = 2.0 * headroom,
           .bound = width,
           .advice = text("lower limits.unilateral.headroom to at most ", 0.5 * width)};
@@ -160,6 +170,18 @@ double braking_gain(const JointLimits& limits, LimitMethod method, const Vector&
     }
   }
   return gain;
+}
+
+double suitable_headroom(const JointLimits& limits, bool second_order, double most) {
+  constexpr double share = 0.25;  // half of what the inequality below allows
+  double headroom = most;
+  for (int joint = 0; joint < limits.size(); ++joint) {
+    if (limits.limited(joint)) {
+      headroom = std::min(headroom, share * (second_order ? second_order_width_of_bounds(limits, joint)
+                                                          : width_of_bounds(limits, joint)));
+    }
+  }
+  return headroom;
 }
 
 std::vector<Condition> velocity_conditions(const Robot& robot, const JointLimits& limits, LimitMethod method,

@@ -9,7 +9,9 @@
 namespace tope {
 namespace {
 
-constexpr double kEnvelopeRounding = 0.1;  // of v_max: radius of the envelope's corner
+constexpr double kEnvelopeRounding = 0.1;  // radius of the envelope's corner, of the speed where it is
+/// sqrt(1 + rounding^2): what the rounding adds where the straight part is at zero.
+const double kEnvelopeAtZero = std::sqrt(1.0 + kEnvelopeRounding * kEnvelopeRounding);
 
 }  // namespace
 
@@ -112,14 +114,21 @@ JointLimits::Envelope JointLimits::envelope(int joint, double distance, double r
   if (!std::isfinite(distance)) {
     return {.speed = v_max, .slope = 0.0};
   }
-  // hyperbola below both lines, so that the slope is continuous where they meet
-  const double rounding = kEnvelopeRounding * v_max;
+  // hyperbola below both lines, so that the slope is continuous where they meet; shifted through zero where the straight
+  // one is, with its corner that much below v_max
+  const double corner = 2.0 * v_max / (1.0 + kEnvelopeAtZero);
+  const double rounding = kEnvelopeRounding * corner;
   const double approach = gain_ * distance + receding;
   const double line = std::max(approach, -0.5 * v_max);
-  const double difference = line - v_max;
+  const double difference = line - corner;
   const double root = std::sqrt(difference * difference + rounding * rounding);
   const double slope = approach > -0.5 * v_max ? gain_ : 0.0;
-  return {.speed = 0.5 * (line + v_max - root), .slope = 0.5 * slope * (1.0 - difference / root)};
+  return {.speed = 0.5 * (line + corner * kEnvelopeAtZero - root),
+          .slope = 0.5 * slope * (1.0 - difference / root)};
+}
+
+double JointLimits::allowed_speed(int joint, double distance) const {
+  return envelope(joint, distance, 0.0).speed;
 }
 
 double JointLimits::allowed_acceleration(int joint, double distance, double receding, double speed,

@@ -1,8 +1,11 @@
+#include "mimic_joints.hpp"
+#include "moving_base.hpp"
 #include "robot_model.hpp"
 #include "urdf_loader.hpp"
 
 #include <tope/common/error.hpp>
 #include <tope/common/names.hpp>
+#include <tope/robot/package_path.hpp>
 #include <tope/robot/robot.hpp>
 
 #include <pinocchio/algorithm/model.hpp>
@@ -77,13 +80,21 @@ Robot Robot::from_urdf(const std::filesystem::path& urdf, const RobotConfig& con
 }
 
 Robot Robot::build(const std::filesystem::path& urdf, const RobotConfig& config, const std::string& where) {
+  Robot robot;
+  const std::filesystem::path file = package_path(urdf);
+  const urdf::ModelInterfaceSharedPtr tree = load_urdf(file);
+  robot.locked_joints_ = config.locked_joints;
+  hold_mimic_joints(file.string(), *tree, robot.locked_joints_);
+  if (config.base) {
+    add_moving_base(*config.base, where, *tree);
+    robot.moving_base_ = config.base;
+  }
   pinocchio::Model full;
-  pinocchio::urdf::buildModel(load_urdf(urdf), full);
+  pinocchio::urdf::buildModel(tree, full);
   auto shared = std::make_shared<RobotModel>();
-  shared->model = reduce(full, config.locked_joints, where);
+  shared->model = reduce(full, robot.locked_joints_, where);
   const pinocchio::Model& model = shared->model;
 
-  Robot robot;
   robot.name_ = model.name;
   for (pinocchio::JointIndex i = 1; i < static_cast<pinocchio::JointIndex>(model.njoints); ++i) {
     robot.joint_names_.push_back(model.names[i]);
@@ -91,7 +102,7 @@ Robot Robot::build(const std::filesystem::path& urdf, const RobotConfig& config,
     robot.joint_units_.emplace_back(prismatic ? "m" : "rad");
   }
   if (robot.joint_names_.empty()) {
-    throw ConfigError(urdf.string() + ": the robot has no joint that moves");
+    throw ConfigError(file.string() + ": the robot has no joint that moves");
   }
   for (const pinocchio::Frame& frame : model.frames) {
     robot.frame_names_.push_back(frame.name);
@@ -105,7 +116,7 @@ Robot Robot::build(const std::filesystem::path& urdf, const RobotConfig& config,
   try {
     robot.check_bounds();
   } catch (const ConfigError& error) {
-    throw ConfigError(urdf.string() + ": " + error.what() +
+    throw ConfigError(file.string() + ": " + error.what() +
                       "; correct the URDF (effort_limit can be set in the robot's YAML file)");
   }
   return robot;

@@ -1,9 +1,14 @@
 #include "../common/yaml_reader.hpp"
 
+#include <tope/common/names.hpp>
 #include <tope/robot/robot.hpp>
+
+#include <algorithm>
 
 namespace tope {
 namespace {
+
+const std::vector<std::string> base_types{"planar", "floating"};  // in the order of MovingBase::Type
 
 std::map<std::string, double> positive_numbers(const YamlReader& yaml, const std::string& key) {
   std::map<std::string, double> values;
@@ -33,7 +38,31 @@ RobotConfig::Base read_base(const YamlReader& yaml) {
   return base;
 }
 
+std::optional<double> positive_if_given(const YamlReader& yaml, const std::string& key) {
+  return yaml.has(key) ? std::optional(yaml.positive(key)) : std::nullopt;
+}
+
+RobotConfig::MovingBase read_moving_base(const YamlReader& yaml) {
+  const std::string type = yaml.text("type");
+  const auto found = std::find(base_types.begin(), base_types.end(), type);
+  if (found == base_types.end()) {
+    yaml.fail("type", "unknown type of base '" + type + "'" + name_hint(type, base_types));
+  }
+  RobotConfig::MovingBase base;
+  base.type = static_cast<RobotConfig::MovingBase::Type>(found - base_types.begin());
+  base.speed = yaml.positive("speed");
+  base.turn_rate = yaml.positive("turn_rate");
+  base.force = positive_if_given(yaml, "force");
+  base.torque = positive_if_given(yaml, "torque");
+  yaml.finish();
+  return base;
+}
+
 }  // namespace
+
+std::string to_string(RobotConfig::MovingBase::Type type) {
+  return base_types[static_cast<std::size_t>(type)];
+}
 
 RobotConfig RobotConfig::from_yaml(const std::filesystem::path& file) {
   const YamlReader yaml = YamlReader::load(file);
@@ -48,6 +77,9 @@ RobotConfig RobotConfig::from_yaml(const std::filesystem::path& file) {
   config.effort_limit = positive_numbers(yaml, "effort_limit");
   if (const auto base = yaml.optional_map("mecanum_base")) {
     config.mecanum_base = read_base(*base);
+  }
+  if (const auto base = yaml.optional_map("base")) {
+    config.base = read_moving_base(*base);
   }
   yaml.finish();
   return config;

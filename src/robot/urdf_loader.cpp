@@ -56,16 +56,13 @@ void make_revolute(urdf::Joint& joint) {
   joint.limits->upper = unlimited;
 }
 
-void check_joint(const urdf::Joint& joint, const std::string& file) {
+void check_kind(const urdf::Joint& joint, const std::string& file) {
   const std::string where = file + ": joint '" + joint.name + "': ";
   if (joint.type == urdf::Joint::FLOATING || joint.type == urdf::Joint::PLANAR) {
-    throw ConfigError(
-        where +
-        "floating and planar joints are not supported; model a planar base as two prismatic joints and "
-        "a continuous one");
-  }
-  if (joint.mimic) {
-    throw ConfigError(where + "mimic joints are not supported; make it fixed, or independent and lock it");
+    throw ConfigError(where +
+                      "floating and planar joints are not supported inside the URDF; let its child be the "
+                      "root and say 'base: {type: "
+                      "planar, ...}' (or floating) in the robot's YAML file");
   }
 }
 
@@ -80,7 +77,7 @@ urdf::ModelInterfaceSharedPtr load_urdf(const std::filesystem::path& file) {
                       (messages.text().empty() ? "the parser gave no reason" : messages.text()));
   }
   for (auto& [name, joint] : tree->joints_) {
-    check_joint(*joint, file.string());
+    check_kind(*joint, file.string());
     if (joint->type == urdf::Joint::CONTINUOUS) {
       make_revolute(*joint);
     }

@@ -7,8 +7,8 @@
 namespace tope {
 
 /// Parses a URDF and makes it fit the library's conventions: continuous joints become revolute ones without
-/// bounds, so that every joint has one coordinate. Errors: ConfigError for a missing or malformed file, for
-/// joints with more than one degree of freedom and for mimic joints.
+/// bounds, so that every joint has one coordinate. Errors: ConfigError for a missing or malformed file, and for
+/// joints with more than one degree of freedom.
 urdf::ModelInterfaceSharedPtr load_urdf(const std::filesystem::path& file);
 
 }  // namespace tope

@@ -3,6 +3,7 @@
 #include "task_reader.hpp"
 
 #include <tope/limit/servo_gains.hpp>
+#include <tope/robot/package_path.hpp>
 #include <tope/scenario/scenario.hpp>
 #include <tope/task/damping.hpp>
 
@@ -24,16 +25,14 @@ auto located(const YamlReader& yaml, const std::string& key, Build build) {
 }
 
 Robot read_robot(const YamlReader& yaml, Scenario& scenario) {
-  const std::filesystem::path urdf = yaml.path("urdf");
+  const bool packaged = yaml.text("urdf").starts_with("package://");
+  const std::filesystem::path urdf =
+      packaged ? located(yaml, "urdf", [&] { return package_path(yaml.text("urdf")); }) : yaml.path("urdf");
   scenario.urdf = std::filesystem::absolute(urdf).lexically_normal();
   const bool has_config = yaml.has("config");
   const std::filesystem::path config = has_config ? yaml.path("config") : "";
   yaml.finish();
-  if (!has_config) {
-    return Robot::from_urdf(urdf);
-  }
-  scenario.locked_joints = RobotConfig::from_yaml(config).locked_joints;
-  return Robot::from_urdf(urdf, config);
+  return has_config ? Robot::from_urdf(urdf, config) : Robot::from_urdf(urdf);
 }
 
 /// `speed_bound` is the joint's: beyond its limit it is led back at no more than half of that.

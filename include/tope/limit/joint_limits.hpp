@@ -99,6 +99,8 @@ class JointLimits {
   double buffer(int joint) const { return buffer_[joint]; }
   double gain() const { return gain_; }  ///< [1/s]
   const JointLimitOptions& options() const { return options_; }
+  /// Torque mode: V of a joint at `distance` from a limit that rests [rad/s or m/s]; zero at the limit.
+  double allowed_speed(int joint, double distance) const;
   /// True when the joint has a finite limit on either side.
   bool limited(int joint) const;
 

@@ -16,7 +16,7 @@ struct RobotModel;  // wraps pinocchio::Model, so that no public header includes
 
 /// What a URDF cannot say about a robot.
 struct RobotConfig {
-  /// Joints held fixed, with their positions [rad or m]; they leave the model.
+  /// Joints held fixed, with their positions [rad or m]; they leave the model, and with them the joints that mimic them.
   std::map<std::string, double> locked_joints;
   /// Rotor inertia seen at the joint, rotor times gear ratio squared [kg m2 or kg].
   std::map<std::string, double> rotor_inertia;
@@ -30,18 +30,33 @@ struct RobotConfig {
     MecanumBaseOptions wheels;
   };
   std::optional<Base> mecanum_base;
+  /// The root moves, which the URDF does not say: joints base_x [m], base_y [m] and base_yaw [rad] for a planar base,
+  /// base_x, base_y, base_z, base_yaw, base_pitch and base_roll for a floating one. They have one coordinate each, like
+  /// all joints, and no position limits but the pitch of a floating base: within 1.4 rad, as yaw and roll become one
+  /// at a right angle. Forces act on the base as on a joint: of a robot on legs, contacts are not in the model.
+  struct MovingBase {
+    enum class Type { planar, floating };
+    Type type = Type::planar;
+    double speed = 0.0;              ///< bound along each axis [m/s]
+    double turn_rate = 0.0;          ///< bound about each axis [rad/s]
+    std::optional<double> force{};   ///< bound along each axis [N]; none: unbounded
+    std::optional<double> torque{};  ///< bound about each axis [Nm]
+  };
+  std::optional<MovingBase> base;
 
   /// Reads a robot's YAML file. Errors: ConfigError with file, line and key.
   static RobotConfig from_yaml(const std::filesystem::path& file);
 };
+
+std::string to_string(RobotConfig::MovingBase::Type type);  ///< as in YAML
 
 /// A robot of revolute, continuous and prismatic joints: the kinematic tree, its named joints and their
 /// bounds. The model is shared between copies and never changes; the bounds belong to the copy. A continuous
 /// joint has one coordinate, its angle, counted past any full turn.
 class Robot {
  public:
-  /// Errors: ConfigError for a missing or malformed URDF, a joint of another kind, a mimic joint, an unknown
-  /// name.
+  /// The URDF's path may start with package://NAME/: see package_path(). Errors: ConfigError for a missing or
+  /// malformed URDF, a joint of another kind, a joint that mimics one that moves, an unknown name.
   static Robot from_urdf(const std::filesystem::path& urdf, const RobotConfig& config = {});
   /// The same with the robot's YAML file beside the URDF.
   static Robot from_urdf(const std::filesystem::path& urdf, const std::filesystem::path& config);
@@ -72,6 +87,10 @@ class Robot {
   void check_bounds() const;
 
   const std::optional<MecanumBase>& base() const { return base_; }
+  /// How the configuration lets the root move.
+  const std::optional<RobotConfig::MovingBase>& moving_base() const { return moving_base_; }
+  /// Every joint that is held fixed, with its position [rad or m]: those of the configuration and their mimics.
+  const std::map<std::string, double>& locked_joints() const { return locked_joints_; }
   const RobotModel& model() const { return *model_; }
 
  private:
@@ -89,6 +108,8 @@ class Robot {
   Vector velocity_limit_;
   Vector effort_limit_;
   std::optional<MecanumBase> base_;
+  std::optional<RobotConfig::MovingBase> moving_base_;
+  std::map<std::string, double> locked_joints_;
 };
 
 }  // namespace tope

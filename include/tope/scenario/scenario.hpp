@@ -41,8 +41,6 @@ struct Scenario {
   std::string description;
   std::filesystem::path file;
   std::filesystem::path urdf;  ///< of the robot, absolute
-  std::map<std::string, double>
-      locked_joints;  ///< joints held fixed, which the robot does not list [rad or m]
   std::shared_ptr<const Robot> robot;
   ControllerOptions controller;
   std::vector<MovingLimit> moving_limits;
