@@ -88,13 +88,11 @@ CallbackReturn PoseController::on_deactivate(const rclcpp_lifecycle::State& /*pr
   return write(u_) ? CallbackReturn::SUCCESS : CallbackReturn::ERROR;
 }
 
-/// In the loop: no heap, no lock, no message, nothing thrown.
+/// In the loop: no heap, no lock that waits, no message, nothing thrown.
 return_type PoseController::update(const rclcpp::Time& /*time*/, const rclcpp::Duration& period) {
   const Goal& goal = *goal_.readFromRT();
-  if (goal.given && !loop_->aim(goal.position, goal.rotation)) {
-    u_.setZero();
-    write(u_);
-    return return_type::ERROR;
+  if (goal.given) {
+    loop_->aim(goal.position, goal.rotation);
   }
   read_state();
   const bool goes = loop_->step(q_, v_, period.seconds(), u_);
@@ -109,7 +107,11 @@ void PoseController::receive(const geometry_msgs::msg::PoseStamped& message) {
   goal.given = true;
   goal.position = {p.x, p.y, p.z};
   goal.rotation = Eigen::Quaterniond(r.w, r.x, r.y, r.z).toRotationMatrix();
-  goal_.writeFromNonRT(goal);
+  if (PoseLoop::is_pose(goal.position, goal.rotation)) {
+    goal_.writeFromNonRT(goal);
+  } else {
+    RCLCPP_WARN(get_node()->get_logger(), "goal ignored: its numbers are no pose");
+  }
 }
 
 bool PoseController::interfaces_are_in_order() const {

@@ -15,12 +15,6 @@ tope::Robot load(const PoseLoop::Options& options) {
                                 : tope::Robot::from_urdf(options.urdf, options.config);
 }
 
-bool is_pose(const tope::Vector3& position, const tope::Matrix3& rotation) {
-  return position.allFinite() &&
-         (rotation * rotation.transpose() - tope::Matrix3::Identity()).norm() < 1e-6 &&
-         rotation.determinant() > 0.0;
-}
-
 }  // namespace
 
 PoseLoop::PoseLoop(const Options& options)
@@ -46,12 +40,16 @@ void PoseLoop::start(const tope::VectorArg& q) {
   bad_cycles_ = 0;
 }
 
-bool PoseLoop::aim(const tope::Vector3& position, const tope::Matrix3& rotation) noexcept {
-  if (!is_pose(position, rotation)) {
-    return false;
+bool PoseLoop::is_pose(const tope::Vector3& position, const tope::Matrix3& rotation) noexcept {
+  return position.allFinite() &&
+         (rotation * rotation.transpose() - tope::Matrix3::Identity()).norm() < 1e-6 &&
+         rotation.determinant() > 0.0;
+}
+
+void PoseLoop::aim(const tope::Vector3& position, const tope::Matrix3& rotation) noexcept {
+  if (is_pose(position, rotation)) {
+    goal_.put(position, rotation);
   }
-  goal_.put(position, rotation);
-  return true;
 }
 
 bool PoseLoop::step(const tope::VectorArg& q, const tope::VectorArg& v, double period,

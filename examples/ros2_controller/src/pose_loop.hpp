@@ -31,8 +31,10 @@ class PoseLoop {
   /// Begins at q (nq): the goal is where the frame is. Allocates, so not for the loop.
   void start(const tope::VectorArg& q);
 
-  /// Where the frame is to go. For the loop. False, and nothing changes, for a pose that is none.
-  [[nodiscard]] bool aim(const tope::Vector3& position, const tope::Matrix3& rotation) noexcept;
+  /// False for numbers that are no pose: not finite, or no rotation.
+  static bool is_pose(const tope::Vector3& position, const tope::Matrix3& rotation) noexcept;
+  /// Where the frame is to go. For the loop. Numbers that are no pose change nothing.
+  void aim(const tope::Vector3& position, const tope::Matrix3& rotation) noexcept;
 
   /// One cycle at q (nq), v (nv), `period` [s] after the last: writes the joint velocities u (nv). Never allocates or
   /// throws. False once it has stopped: then u = 0, until the next start().
