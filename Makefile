@@ -74,7 +74,7 @@ soak: build
 
 # The C++ tests under the address and undefined-behaviour sanitizers: all, or some rooms: ROOMS="law limit".
 SANITIZED := build/Sanitize
-ROOMS     ?= common controller law limit plant reference robot scenario task
+ROOMS     ?= common controller examples law limit plant reference robot scenario task
 .PHONY: sanitize
 sanitize: setup
 	$(BIN)/cmake -S . -B $(SANITIZED) -G Ninja -DCMAKE_MAKE_PROGRAM=$(abspath $(BIN))/ninja -DCMAKE_BUILD_TYPE=Release \
