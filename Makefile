@@ -74,7 +74,7 @@ soak: build
 
 # The C++ tests under the address and undefined-behaviour sanitizers: all, or some rooms: ROOMS="law limit".
 SANITIZED := build/Sanitize
-ROOMS     ?= common controller law limit plant reference robot scenario task
+ROOMS     ?= common controller examples law limit plant reference robot scenario task
 .PHONY: sanitize
 sanitize: setup
 	$(BIN)/cmake -S . -B $(SANITIZED) -G Ninja -DCMAKE_MAKE_PROGRAM=$(abspath $(BIN))/ninja -DCMAKE_BUILD_TYPE=Release \
@@ -87,7 +87,7 @@ test-python: viewer-tests
 	$(BIN)/pytest
 
 examples:
-	@for example in examples/*.py; do echo $$example; $(BIN)/python $$example || exit 1; done
+	@for example in examples/[0-9]*.py; do echo $$example; $(BIN)/python $$example || exit 1; done
 
 # Random goals, many out of reach: figures of the README. Minutes each.
 .PHONY: campaign-goals campaign-torque-goals
@@ -123,10 +123,12 @@ experiment: build
 	$(BIN)/python bench/experiment.py
 	$(BIN)/python bench/experiment_figure.py
 
-# The pictures of docs/, from real runs in a real browser.
+# The pictures of docs/, from real runs in a real browser, and of examples/, from what the examples record.
 .PHONY: pictures
-pictures: build viewer-tests
+pictures: viewer-tests
+	$(MAKE) build TESTS=ON
 	PYTHONPATH=tests/python $(BIN)/python docs/pictures.py
+	$(BIN)/python examples/pictures.py
 
 lint:
 	$(MAKE) build viewer-tests TESTS=ON

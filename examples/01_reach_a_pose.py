@@ -22,12 +22,15 @@ reach = controller.add(tope.FramePosition(frame="ee", target=goal_position, refe
 
 q = np.array([0.15, 0, 0, 0, 0.4, 0.9, 0.6, 1.8])
 v = np.zeros(robot.nv)
+path = []
 for cycle in range(8000):
     v = controller.update(q, v, cycle * dt)
     q += dt * v  # a robot that follows its velocity commands
+    path.append(q.copy())
 
 turn_error = np.linalg.norm(controller.error(turn))
 reach_error = np.linalg.norm(controller.error(reach))
 room = np.minimum(robot.position_upper - q, q - robot.position_lower).min()
 print(f"orientation error {turn_error:.2e} rad, position error {reach_error:.2e} m, distance kept {room:.4f}")
-sys.exit(0 if turn_error < 1e-3 and reach_error < 1e-3 and room > 0 else 1)
+if __name__ == "__main__":
+    sys.exit(0 if turn_error < 1e-3 and reach_error < 1e-3 and room > 0 else 1)

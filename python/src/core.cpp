@@ -19,6 +19,9 @@ void raise(nb::handle type, std::string_view message) {
 
 NB_MODULE(_core, module) {
   module.doc() = "C++ core of tope";
+  // A controller may hold a function, a moving target, that sees the controller: such a cycle lives until the program
+  // ends, and nanobind would print about it then.
+  nb::set_leak_warnings(false);
   static const nb::exception<tope::Error> error(module, "Error", PyExc_RuntimeError);
   static const nb::exception<tope::ConfigError> config_error(module, "ConfigError", error.ptr());
   nb::register_exception_translator([](const std::exception_ptr& thrown, void*) {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <tope/scenario/closed_loop.hpp>
-#include <tope/scenario/live_goal.hpp>
+#include <tope/task/live_goal.hpp>
 
 #include <map>
 #include <memory>

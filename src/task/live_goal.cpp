@@ -1,4 +1,4 @@
-#include <tope/scenario/live_goal.hpp>
+#include <tope/task/live_goal.hpp>
 #include <tope/task/rotation_error.hpp>
 
 #include <Eigen/Geometry>

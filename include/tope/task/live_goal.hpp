@@ -4,8 +4,9 @@
 
 namespace tope {
 
-/// A goal that someone drags: it follows where it was last put like a critically damped spring, so that position,
-/// velocity and acceleration of the target fit each other and a command does not jump.
+/// A goal that someone drags, or that arrives in messages: it follows where it was last put like a critically damped
+/// spring, so that position, velocity and acceleration of the target fit each other and a command does not jump.
+/// Never allocates: a moving target may read it in the loop.
 class LiveGoal {
  public:
   LiveGoal(const Vector3& position, const Matrix3& rotation);
