@@ -70,14 +70,15 @@ void bind_options(nb::module_& module) {
       .def(
           "__init__",
           [](LimitOptions* self, const std::string& method, double buffer, OptionalNumber gain, double margin,
-             const std::string& ramp, const std::map<std::string, double>& buffers, OptionalNumber servo_gain,
-             OptionalNumber lambda_p, OptionalNumber lambda_v, const std::string& measure,
-             const UnilateralOptions& unilateral, const PotentialFieldOptions& potential_field,
-             bool enforce_conditions) {
+             const std::string& ramp, const std::map<std::string, double>& buffers,
+             const std::map<std::string, double>& gains, OptionalNumber servo_gain, OptionalNumber lambda_p,
+             OptionalNumber lambda_v, const std::string& measure, const UnilateralOptions& unilateral,
+             const PotentialFieldOptions& potential_field, bool enforce_conditions) {
             new (self) LimitOptions{
                 .method = limit_method_from(method),
                 .rows = {.buffer = buffer,
                          .buffers = buffers,
+                         .gains = gains,
                          .ramp = static_cast<Ramp>(choice("ramp", ramp, {"raised_cosine", "quintic"})),
                          .measure =
                              static_cast<Measure>(choice("measure", measure, {"predicted", "position"})),
@@ -90,10 +91,10 @@ void bind_options(nb::module_& module) {
           nb::kw_only(), "method"_a = to_string(LimitOptions{}.method),
           "buffer"_a = JointLimitOptions{}.buffer, "gain"_a = nb::none(),
           "margin"_a = JointLimitOptions{}.margin, "ramp"_a = "raised_cosine",
-          "buffers"_a = std::map<std::string, double>{}, "servo_gain"_a = nb::none(),
-          "lambda_p"_a = nb::none(), "lambda_v"_a = nb::none(), "measure"_a = "predicted",
-          "unilateral"_a = UnilateralOptions{}, "potential_field"_a = PotentialFieldOptions{},
-          "enforce_conditions"_a = true);
+          "buffers"_a = std::map<std::string, double>{}, "gains"_a = std::map<std::string, double>{},
+          "servo_gain"_a = nb::none(), "lambda_p"_a = nb::none(), "lambda_v"_a = nb::none(),
+          "measure"_a = "predicted", "unilateral"_a = UnilateralOptions{},
+          "potential_field"_a = PotentialFieldOptions{}, "enforce_conditions"_a = true);
 }
 
 void bind_status(nb::module_& module) {
@@ -215,8 +216,8 @@ void bind_controller(nb::module_& module) {
           "handle"_a, "Error of a task as of the last update.")
       .def_prop_ro("status", &Controller::status)
       .def_prop_ro(
-          "limit_gain", [](const Controller& controller) { return controller.limits().gain(); },
-          "Gain of the limits [1/s]: as given, or as chosen for the mode and the drives.")
+          "limit_gains", [](const Controller& controller) { return controller.limits().gains(); },
+          "Gain of each joint's limits (nv) [1/s]: as given, or as chosen for the mode and its drive.")
       .def_prop_ro(
           "status_text",
           [](const Controller& controller) { return describe(controller.status(), controller.robot()); })

@@ -79,8 +79,10 @@ void bind_live(nb::module_& module) {
                      return describe(controller.status(), controller.robot());
                    })
       .def_prop_ro(
-          "limit_gain", [](const LiveSimulation& live) { return live.loop().controller().limits().gain(); },
-          "The gain that limits are kept with [1/s], chosen by the controller if the scenario does not say.")
+          "limit_gain",
+          [](const LiveSimulation& live) { return live.loop().controller().limits().least_gain(); },
+          "The least gain of the joints' limits [1/s], chosen by the controller if the scenario does not "
+          "say.")
       .def_prop_ro("errors", &errors,
                    "Norm of each task's error [m or rad]; None for a task that is not present.")
       .def_prop_ro("goals", &goals, "Position [m] and quaternion (w, x, y, z) of the goal of each frame.");

@@ -82,13 +82,16 @@ void require_speed_limits(const Robot& robot, const JointLimits& limits) {
   }
 }
 
-/// A gain that is left open becomes what the drives can brake with.
+/// Gains that are left open become what the drives can brake with.
 JointLimitOptions with_gain(const Robot& robot, const ControllerOptions& options, const Vector& authority) {
   JointLimitOptions rows = options.limits.rows;
   if (options.mode == Mode::torque && !rows.gain) {
     const JointLimits limits(robot, rows);
     require_speed_limits(robot, limits);
-    rows.gain = braking_gain(limits, options.limits.method, authority);
+    for (int j = 0; j < robot.nv(); ++j) {
+      rows.gains.emplace(robot.joint_names()[static_cast<std::size_t>(j)],
+                         braking_gain(limits, options.limits.method, j, authority[j]));
+    }
   }
   return rows;
 }
@@ -126,15 +129,26 @@ Controller::Controller(const Robot& robot, const ControllerOptions& options)
   if (options_.limits.method == LimitMethod::potential_field) {
     field_.emplace(robot_, options_.limits.potential_field);
   }
+  if (!options_.limits.unilateral.headroom) {
+    share_headroom();
+  }
   if (options_.limits.enforce_conditions) {
     require_conditions(conditions());
   }
   rebuild();
 }
 
+/// Joints with little room between their bounds take less of it.
+void Controller::share_headroom() {
+  const double most = options_.limits.unilateral.resolved(options_.mode).headroom;
+  for (int j = 0; j < robot_.nv(); ++j) {
+    stack_.headroom_share[j] = suitable_headroom(limits_, j, torque_mode(), most) / most;
+  }
+}
+
 std::vector<Condition> Controller::conditions() const {
   const LimitMethod method = options_.limits.method;
-  const double headroom = options_.limits.unilateral.resolved(options_.mode, limits_).headroom;
+  const Vector headroom = options_.limits.unilateral.resolved(options_.mode).headroom * stack_.headroom_share;
   return torque_mode() ? torque_conditions(robot_, limits_, method, headroom, options_.dt, authority_)
                        : velocity_conditions(robot_, limits_, method, headroom, options_.dt);
 }
@@ -227,7 +241,7 @@ double Controller::activation(TaskHandle handle) const { return entry(handle).ac
 LawOptions Controller::law_options() const {
   return {.method = options_.limits.method,
           .hierarchy = options_.singularities,
-          .unilateral = options_.limits.unilateral.resolved(options_.mode, limits_)};
+          .unilateral = options_.limits.unilateral.resolved(options_.mode)};
 }
 
 /// Lays out the stack for the present entries and reserves the law's memory.

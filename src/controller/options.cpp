@@ -1,9 +1,8 @@
 #include <tope/controller/options.hpp>
-#include <tope/limit/conditions.hpp>
 
 namespace tope {
 
-Unilateral::Options UnilateralOptions::resolved(Mode mode, const JointLimits& limits) const {
+Unilateral::Options UnilateralOptions::resolved(Mode mode) const {
   // whitened rows of torque mode are in 1/sqrt(kg): a direction that the youBot's base serves has sigma 0.147
   Unilateral::Options options =
       mode == Mode::velocity ? Unilateral::Options{} : Unilateral::Options{.damping = 0.1, .headroom = 0.5};
@@ -11,7 +10,7 @@ Unilateral::Options UnilateralOptions::resolved(Mode mode, const JointLimits& li
   options.fine_damping = fine_damping.value_or(options.fine_damping);
   options.fine_below = fine_below.value_or(options.fine_below);
   options.lock = lock.value_or(options.lock);
-  options.headroom = headroom.value_or(suitable_headroom(limits, mode == Mode::torque, options.headroom));
+  options.headroom = headroom.value_or(options.headroom);
   return options;
 }
 

@@ -9,7 +9,8 @@ Stack::Stack(int n)
       limit_activation(Vector::Zero(n)),
       limit_target(Vector::Zero(n)),
       motion_lower(Vector::Zero(n)),
-      motion_upper(Vector::Zero(n)) {}
+      motion_upper(Vector::Zero(n)),
+      headroom_share(Vector::Ones(n)) {}
 
 int Stack::max_level_rows() const {
   int largest = 0;

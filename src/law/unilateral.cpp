@@ -129,8 +129,8 @@ double Unilateral::squared_damping(double squared_residual) const {
 void Unilateral::set_bounds(const Stack& stack, int level) {
   const double headroom = options_.headroom / (1.0 + level);
   const auto motion = motion_.head(stack.size());
-  lower_ = (stack.motion_lower - motion).array() + headroom;
-  upper_ = (stack.motion_upper - motion).array() - headroom;
+  lower_ = stack.motion_lower - motion + headroom * stack.headroom_share;
+  upper_ = stack.motion_upper - motion - headroom * stack.headroom_share;
 }
 
 /// True when every sigma exceeds the lock.

@@ -18,10 +18,10 @@ Condition servo_is_stable(const JointLimits& limits, double dt) {
   return {.name = "limit servo within one period",
           .joint = "",
           .expression = "dt * gain <= 1",
-          .value = dt * limits.gain(),
+          .value = dt * limits.largest_gain(),
           .bound = 1.0,
           .advice = text("lower limits.gain to at most ", 1.0 / dt, " 1/s or dt to at most ",
-                         1.0 / limits.gain(), " s")};
+                         1.0 / limits.largest_gain(), " s")};
 }
 
 /// A joint at full speed must not cross its buffer between two samples; kappa is the ramp's steepness.
@@ -41,7 +41,7 @@ Condition buffer_is_wide(const Robot& robot, const JointLimits& limits, int join
 /// Least distance between the bounds that the unilateral law keeps a joint's motion in.
 double width_of_bounds(const JointLimits& limits, int joint) {
   const double range = limits.upper()[joint] - limits.lower()[joint] - 2.0 * limits.options().margin;
-  return std::min(limits.gain() * range, 0.5 * limits.velocity_limit()[joint]);
+  return std::min(limits.gain(joint) * range, 0.5 * limits.velocity_limit()[joint]);
 }
 
 double second_order_width_of_bounds(const JointLimits& limits, int joint) {
@@ -62,7 +62,7 @@ Condition headroom_fits(const Robot& robot, const JointLimits& limits, int joint
 }
 
 Condition second_order_servo_is_stable(const JointLimits& limits, double dt) {
-  const double c = 1.0 + 0.5 * limits.gain() * dt;
+  const double c = 1.0 + 0.5 * limits.largest_gain() * dt;
   return {.name = "limit servo within one period",
           .joint = "",
           .expression = "dt * (1 + gain dt / 2) * servo_gain <= 1",
@@ -71,19 +71,21 @@ Condition second_order_servo_is_stable(const JointLimits& limits, double dt) {
           .advice = text("lower limits.servo_gain to at most ", 1.0 / (c * dt), " 1/s")};
 }
 
+constexpr double kRowsApart = 0.9;  // of v_max
+
 /// Away from its limits a joint at rest must be outside both of its rows.
 Condition rows_apart(const Robot& robot, const JointLimits& limits, int joint) {
   const std::string& name = robot.joint_names()[static_cast<std::size_t>(joint)];
   const double speed = limits.velocity_limit()[joint];
-  const double gain = limits.gain();
+  const double gain = limits.gain(joint);
   return {.name = "rows idle at rest",
           .joint = name,
           .expression = "gain * buffer <= 0.9 v_max",
           .value = gain * limits.buffer(joint),
-          .bound = 0.9 * speed,
-          .advice = text("lower the buffer of ", name, " to at most ", 0.9 * speed / gain, " ",
+          .bound = kRowsApart * speed,
+          .advice = text("lower the buffer of ", name, " to at most ", kRowsApart * speed / gain, " ",
                          robot.joint_unit(joint), " or limits.gain to at most ",
-                         0.9 * speed / limits.buffer(joint), " 1/s")};
+                         kRowsApart * speed / limits.buffer(joint), " 1/s")};
 }
 
 /// A joint at full speed that is accelerated as hard as its row can brake must not cross its buffer in a period.
@@ -91,7 +93,7 @@ Condition second_order_buffer_is_wide(const Robot& robot, const JointLimits& lim
   const std::string& name = robot.joint_names()[static_cast<std::size_t>(joint)];
   const JointLimitOptions& options = limits.options();
   const double kappa = ramp_slope_factor(options.ramp);
-  const double gain = limits.gain();
+  const double gain = limits.gain(joint);
   const double c = 1.0 + 0.5 * gain * dt;
   const double speed = limits.velocity_limit()[joint];
   const double buffer = limits.buffer(joint);
@@ -127,9 +129,9 @@ Condition servo_keeps_up(const JointLimits& limits) {
   return {.name = "servo as fast as the limits",
           .joint = "",
           .expression = "gain <= servo_gain",
-          .value = limits.gain(),
+          .value = limits.largest_gain(),
           .bound = limits.options().servo_gain,
-          .advice = text("raise limits.servo_gain to at least ", limits.gain(), " 1/s")};
+          .advice = text("raise limits.servo_gain to at least ", limits.largest_gain(), " 1/s")};
 }
 
 /// What a limit row asks of a joint's drive, over the gain: the speed lost per 1 / gain.
@@ -148,7 +150,7 @@ Condition drive_can_brake(const Robot& robot, const JointLimits& limits, LimitMe
           .joint = name,
           .expression = std::string(rows ? "gain * (v_max + servo_gain * buffer)" : "gain * v_max") +
                         " <= (effort - |gravity|) / inertia in the worst pose",
-          .value = limits.gain() * speed,
+          .value = limits.gain(joint) * speed,
           .bound = authority,
           .advice =
               authority > 0.0
@@ -161,31 +163,30 @@ Condition drive_can_brake(const Robot& robot, const JointLimits& limits, LimitMe
 
 }  // namespace
 
-double braking_gain(const JointLimits& limits, LimitMethod method, const Vector& authority) {
+double braking_gain(const JointLimits& limits, LimitMethod method, int joint, double authority) {
   constexpr double share = 0.8;  // the rest is for speed-dependent forces and joints that brake at once
-  double gain = JointLimits::default_gain;
-  for (int joint = 0; joint < limits.size(); ++joint) {
-    if (limits.limited(joint) && authority[joint] > 0.0) {
-      gain = std::min(gain, share * authority[joint] / braking_speed(limits, method, joint));
-    }
+  double gain = std::min(JointLimits::default_gain, limits.options().servo_gain);
+  if (!limits.limited(joint) || !(authority > 0.0)) {
+    return gain;
   }
-  return gain;
+  gain = std::min(gain, share * authority / braking_speed(limits, method, joint));
+  return method == LimitMethod::unilateral
+             ? gain
+             : std::min(gain, kRowsApart * limits.velocity_limit()[joint] / limits.buffer(joint));
 }
 
-double suitable_headroom(const JointLimits& limits, bool second_order, double most) {
+double suitable_headroom(const JointLimits& limits, int joint, bool second_order, double most) {
   constexpr double share = 0.25;  // half of what the inequality below allows
-  double headroom = most;
-  for (int joint = 0; joint < limits.size(); ++joint) {
-    if (limits.limited(joint)) {
-      headroom = std::min(headroom, share * (second_order ? second_order_width_of_bounds(limits, joint)
-                                                          : width_of_bounds(limits, joint)));
-    }
+  if (!limits.limited(joint)) {
+    return most;
   }
-  return headroom;
+  const double width =
+      second_order ? second_order_width_of_bounds(limits, joint) : width_of_bounds(limits, joint);
+  return std::min(most, share * width);
 }
 
 std::vector<Condition> velocity_conditions(const Robot& robot, const JointLimits& limits, LimitMethod method,
-                                           double headroom, double dt) {
+                                           const Vector& headroom, double dt) {
   std::vector<Condition> conditions;
   if (method == LimitMethod::none) {
     return conditions;
@@ -200,14 +201,15 @@ std::vector<Condition> velocity_conditions(const Robot& robot, const JointLimits
     if (!limits.limited(joint)) {
       continue;
     }
-    conditions.push_back(method == LimitMethod::unilateral ? headroom_fits(robot, limits, joint, headroom)
-                                                           : buffer_is_wide(robot, limits, joint, kappa, dt));
+    conditions.push_back(method == LimitMethod::unilateral
+                             ? headroom_fits(robot, limits, joint, headroom[joint])
+                             : buffer_is_wide(robot, limits, joint, kappa, dt));
   }
   return conditions;
 }
 
 std::vector<Condition> torque_conditions(const Robot& robot, const JointLimits& limits, LimitMethod method,
-                                         double headroom, double dt, const Vector& authority) {
+                                         const Vector& headroom, double dt, const Vector& authority) {
   std::vector<Condition> conditions;
   if (method == LimitMethod::none) {
     return conditions;
@@ -221,7 +223,7 @@ std::vector<Condition> torque_conditions(const Robot& robot, const JointLimits& 
       continue;
     }
     if (method == LimitMethod::unilateral) {
-      conditions.push_back(second_order_headroom_fits(robot, limits, joint, headroom));
+      conditions.push_back(second_order_headroom_fits(robot, limits, joint, headroom[joint]));
     } else {
       conditions.push_back(rows_apart(robot, limits, joint));
       conditions.push_back(second_order_buffer_is_wide(robot, limits, joint, dt));

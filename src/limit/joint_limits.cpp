@@ -17,7 +17,7 @@ const double kEnvelopeAtZero = std::sqrt(1.0 + kEnvelopeRounding * kEnvelopeRoun
 
 JointLimits::JointLimits(const Robot& robot, const JointLimitOptions& options)
     : options_(options),
-      gain_(options.gain.value_or(default_gain)),
+      gain_(Vector::Constant(robot.nv(), options.gain.value_or(default_gain))),
       lower_(robot.position_lower()),
       upper_(robot.position_upper()),
       lower_rate_(Vector::Zero(robot.nv())),
@@ -31,14 +31,18 @@ JointLimits::JointLimits(const Robot& robot, const JointLimitOptions& options)
       motion_upper_(Vector::Zero(robot.nv())),
       near_upper_(static_cast<std::size_t>(robot.nv()), 0),
       near_lower_(static_cast<std::size_t>(robot.nv()), 0),
-      engagement_scale_(gain_) {
+      engagement_slack_(Vector::Zero(robot.nv())) {
   require_positive("limits: buffer", options.buffer);
-  require_positive("limits: gain", gain_);
+  require_positive("limits: gain", options.gain.value_or(default_gain));
   require_positive("limits: servo_gain", options.servo_gain);
   require_positive("limits: margin", options.margin);
   for (const auto& [joint, buffer] : options.buffers) {
     require_positive("limits: buffer of " + joint, buffer);
     buffer_[robot.joint_index(joint)] = buffer;
+  }
+  for (const auto& [joint, gain] : options.gains) {
+    require_positive("limits: gain of " + joint, gain);
+    gain_[robot.joint_index(joint)] = gain;
   }
   for (int j = 0; j < size(); ++j) {
     const double range = upper_[j] - lower_[j];
@@ -73,7 +77,7 @@ bool JointLimits::move(int joint, const LimitMotion& motion) {
 void JointLimits::update(const VectorArg& q) {
   beyond_ = -1;
   furthest_beyond_ = 0.0;
-  engagement_scale_ = gain_;
+  engagement_slack_ = gain_.cwiseProduct(buffer_);
   for (int j = 0; j < size(); ++j) {
     const double to_upper = upper_[j] - q[j];
     const double to_lower = q[j] - lower_[j];
@@ -84,11 +88,11 @@ void JointLimits::update(const VectorArg& q) {
     const double v_max = velocity_limit_[j];
     // far beyond a limit the row would lead back faster than the joint may move
     target_[j] = std::isfinite(distance)
-                     ? std::clamp(side_[j] * gain_ * (distance - buffer_[j]) + rate, -v_max, v_max)
+                     ? std::clamp(side_[j] * gain_[j] * (distance - buffer_[j]) + rate, -v_max, v_max)
                      : 0.0;
 
-    const double ahead = gain_ * (to_upper - options_.margin) + upper_receding(j);
-    const double behind = gain_ * (to_lower - options_.margin) + lower_receding(j);
+    const double ahead = gain_[j] * (to_upper - options_.margin) + upper_receding(j);
+    const double behind = gain_[j] * (to_lower - options_.margin) + lower_receding(j);
     motion_upper_[j] = std::clamp(ahead, -0.5 * v_max, v_max);
     motion_lower_[j] = -std::clamp(behind, -0.5 * v_max, v_max);
     note_distances(j, to_upper, to_lower);
@@ -98,8 +102,8 @@ void JointLimits::update(const VectorArg& q) {
 /// What both orders keep of a joint's distances to its limits.
 void JointLimits::note_distances(int joint, double to_upper, double to_lower) {
   const auto k = static_cast<std::size_t>(joint);
-  const double ahead = gain_ * (to_upper - options_.margin) + upper_receding(joint);
-  const double behind = gain_ * (to_lower - options_.margin) + lower_receding(joint);
+  const double ahead = gain_[joint] * (to_upper - options_.margin) + upper_receding(joint);
+  const double behind = gain_[joint] * (to_lower - options_.margin) + lower_receding(joint);
   near_upper_[k] = ahead < velocity_limit_[joint] ? 1 : 0;
   near_lower_[k] = behind < velocity_limit_[joint] ? 1 : 0;
   const double excess = -std::min(to_upper, to_lower);
@@ -118,11 +122,11 @@ JointLimits::Envelope JointLimits::envelope(int joint, double distance, double r
   // one is, with its corner that much below v_max
   const double corner = 2.0 * v_max / (1.0 + kEnvelopeAtZero);
   const double rounding = kEnvelopeRounding * corner;
-  const double approach = gain_ * distance + receding;
+  const double approach = gain_[joint] * distance + receding;
   const double line = std::max(approach, -0.5 * v_max);
   const double difference = line - corner;
   const double root = std::sqrt(difference * difference + rounding * rounding);
-  const double slope = approach > -0.5 * v_max ? gain_ : 0.0;
+  const double slope = approach > -0.5 * v_max ? gain_[joint] : 0.0;
   return {.speed = 0.5 * (line + corner * kEnvelopeAtZero - root),
           .slope = 0.5 * slope * (1.0 - difference / root)};
 }
@@ -143,7 +147,7 @@ void JointLimits::update_second_order(const VectorArg& q, const VectorArg& v) {
   for (int j = 0; j < size(); ++j) {
     const double to_upper = upper_[j] - q[j];
     const double to_lower = q[j] - lower_[j];
-    const double reserve = gain_ * buffer_[j];  // slack at which a row begins to act
+    const double reserve = gain_[j] * buffer_[j];  // slack at which a row begins to act
     const double upper_away = upper_receding(j);
     const double lower_away = lower_receding(j);
     const double slack_upper = envelope(j, to_upper, upper_away).speed - v[j];
@@ -157,8 +161,8 @@ void JointLimits::update_second_order(const VectorArg& q, const VectorArg& v) {
       const double distance = std::min(to_upper, to_lower);
       side_[j] = to_upper <= to_lower ? 1.0 : -1.0;
       activation_[j] = ramp(options_.ramp, 1.0 - distance / buffer_[j]);
-      const double servo = gain_ * options_.servo_gain;
-      const double damping = gain_ + options_.servo_gain;
+      const double servo = gain_[j] * options_.servo_gain;
+      const double damping = gain_[j] + options_.servo_gain;
       const double relative = v[j] - (side_[j] > 0.0 ? upper_rate_[j] : lower_rate_[j]);
       target_[j] =
           std::isfinite(distance) ? side_[j] * servo * (distance - buffer_[j]) - damping * relative : 0.0;
@@ -167,16 +171,16 @@ void JointLimits::update_second_order(const VectorArg& q, const VectorArg& v) {
     motion_lower_[j] = -allowed_acceleration(j, to_lower - options_.margin, lower_away, -v[j], 0.0);
     note_distances(j, to_upper, to_lower);
   }
-  engagement_scale_ = gain_ * options_.servo_gain;
+  engagement_slack_ = options_.servo_gain * gain_.cwiseProduct(buffer_);
 }
 
 void JointLimits::blended_acceleration_bounds(const Vector& activation, double dt, Vector& lower,
                                               Vector& upper) const {
   const double kappa = ramp_slope_factor(options_.ramp);
-  const double c = 1.0 + 0.5 * gain_ * dt;
   for (int j = 0; j < size(); ++j) {
-    const double travel = buffer_[j] * (1.0 - 0.5 * gain_ * gain_ * dt * dt) / (kappa * dt);
-    const double largest = std::max(0.0, (travel - velocity_limit_[j]) * gain_ / c);
+    const double gain = gain_[j];
+    const double travel = buffer_[j] * (1.0 - 0.5 * gain * gain * dt * dt) / (kappa * dt);
+    const double largest = std::max(0.0, (travel - velocity_limit_[j]) * gain / (1.0 + 0.5 * gain * dt));
     lower[j] = -largest;
     upper[j] = largest;
     Vector& near = side_[j] > 0.0 ? upper : lower;
@@ -198,7 +202,7 @@ void JointLimits::engagement(const VectorArg& motion, Eigen::Ref<Vector> upper,
                              Eigen::Ref<Vector> lower) const {
   for (int j = 0; j < size(); ++j) {
     // a bound that only the speed limit sets is none of a position limit's
-    const double scale = engagement_scale_ * buffer_[j];
+    const double scale = engagement_slack_[j];
     upper[j] = near_upper_[static_cast<std::size_t>(j)] != 0
                    ? ramp(options_.ramp, 1.0 - (motion_upper_[j] - motion[j]) / scale)
                    : 0.0;

@@ -50,7 +50,7 @@ MovingLimit read_moving_limit(const YamlReader& yaml, int joint, double speed_bo
   return moving;
 }
 
-/// `limits.joints`: limits and buffers that this scenario sets, an obstacle for example.
+/// `limits.joints`: limits, buffers and gains that this scenario sets, an obstacle for example.
 void read_joint_limits(const YamlReader& joints, Robot& robot, JointLimitOptions& options,
                        std::vector<MovingLimit>& moving) {
   Vector lower = robot.position_lower();
@@ -64,6 +64,9 @@ void read_joint_limits(const YamlReader& joints, Robot& robot, JointLimitOptions
     velocity[joint] = yaml.positive("velocity", velocity[joint]);
     if (yaml.has("buffer")) {
       options.buffers[name] = yaml.positive("buffer");
+    }
+    if (yaml.has("gain")) {
+      options.gains[name] = yaml.positive("gain");
     }
     if (const auto motion = yaml.optional_map("upper_motion")) {
       moving.push_back(read_moving_limit(*motion, joint, velocity[joint]));

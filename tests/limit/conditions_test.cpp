@@ -15,11 +15,12 @@ namespace tope::test {
 namespace {
 
 constexpr int kJoint = 4;  // arm_joint_2
+const Vector kHeadroom = Vector::Constant(8, 0.5);
 
 std::vector<Condition> conditions(const JointLimitOptions& options, LimitMethod method, double dt,
                                   double headroom = 0.01) {
   const Robot robot = youbot();
-  return velocity_conditions(robot, JointLimits(robot, options), method, headroom, dt);
+  return velocity_conditions(robot, JointLimits(robot, options), method, Vector::Constant(8, headroom), dt);
 }
 
 const Condition* find(const std::vector<Condition>& list, const std::string& name, const std::string& joint) {
@@ -50,7 +51,7 @@ BOOST_AUTO_TEST_CASE(drives_must_be_able_to_brake) {
   const double v_max = robot.velocity_limit()[kJoint];
   for (const LimitMethod method : {LimitMethod::unilateral, LimitMethod::chain}) {
     const JointLimits strict(robot, {.gain = 5.0, .servo_gain = 10.0});
-    const auto list = torque_conditions(robot, strict, method, 0.5, 1e-3, authority);
+    const auto list = torque_conditions(robot, strict, method, kHeadroom, 1e-3, authority);
     const Condition* brake = find(list, "brake", "arm_joint_2");
     BOOST_REQUIRE(brake != nullptr);
     const double per_gain = v_max + (method == LimitMethod::chain ? 10.0 * 0.1 : 0.0);
@@ -59,21 +60,45 @@ BOOST_AUTO_TEST_CASE(drives_must_be_able_to_brake) {
     BOOST_TEST(!brake->holds());
     BOOST_TEST(brake->advice.find("lower limits.gain to at most") != std::string::npos);
 
-    const double gain = braking_gain(strict, method, authority);
+    const double gain = braking_gain(strict, method, kJoint, 6.0);
     BOOST_TEST(gain == 0.8 * 6.0 / per_gain, boost::test_tools::tolerance(1e-12));
     const JointLimits safe(robot, {.gain = gain, .servo_gain = 10.0});
-    for (const Condition& condition : torque_conditions(robot, safe, method, 0.5, 1e-3, authority)) {
+    for (const Condition& condition : torque_conditions(robot, safe, method, kHeadroom, 1e-3, authority)) {
       BOOST_TEST(condition.holds(), condition.name << " " << condition.joint);
     }
   }
-  BOOST_TEST(braking_gain(JointLimits(robot, {}), LimitMethod::chain, Vector::Constant(8, 1e4)) ==
+  BOOST_TEST(braking_gain(JointLimits(robot, {}), LimitMethod::unilateral, kJoint, 1e4) ==
              JointLimits::default_gain);
+  BOOST_TEST(braking_gain(JointLimits(robot, {.servo_gain = 4.0}), LimitMethod::unilateral, kJoint, 1e4) ==
+             4.0);
+  BOOST_TEST(braking_gain(JointLimits(robot, {.buffer = 0.2}), LimitMethod::chain, kJoint, 1e4) ==
+             0.9 * v_max / 0.2);
+  const int yaw = robot.joint_index("base_yaw");  // without limits
+  BOOST_TEST(braking_gain(JointLimits(robot, {}), LimitMethod::unilateral, yaw, 1.0) ==
+             JointLimits::default_gain);
+}
+
+BOOST_AUTO_TEST_CASE(headroom_suits_the_joint) {
+  const Robot robot = youbot();
+  const JointLimits limits(robot, {.gain = 0.1});
+  const int yaw = robot.joint_index("base_yaw");
+  BOOST_TEST(suitable_headroom(limits, yaw, true, 0.5) == 0.5);
+  const double range = limits.upper()[kJoint] - limits.lower()[kJoint] - 2e-3;
+  BOOST_TEST(suitable_headroom(limits, kJoint, true, 0.5) ==
+             0.25 * 10.0 * limits.allowed_speed(kJoint, 0.5 * range));
+  BOOST_TEST(suitable_headroom(limits, kJoint, false, 0.5) == 0.25 * 0.1 * range,
+             boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(suitable_headroom(limits, kJoint, false, 0.01) == 0.01);
+  Vector headroom = Vector::Constant(8, 0.5);
+  headroom[kJoint] = suitable_headroom(limits, kJoint, true, 0.5);
+  const auto list = torque_conditions(robot, limits, LimitMethod::unilateral, headroom, 1e-3, kHeadroom);
+  BOOST_TEST(find(list, "headroom", "arm_joint_2")->holds());
 }
 
 BOOST_AUTO_TEST_CASE(drives_that_cannot_hold_are_named) {
   const Robot robot = youbot();
   const JointLimits limits(robot, {.gain = 1.0});
-  const auto list = torque_conditions(robot, limits, LimitMethod::chain, 0.5, 1e-3, Vector::Zero(8));
+  const auto list = torque_conditions(robot, limits, LimitMethod::chain, kHeadroom, 1e-3, Vector::Zero(8));
   const Condition* brake = find(list, "brake", "arm_joint_2");
   BOOST_REQUIRE(brake != nullptr);
   BOOST_TEST(!brake->holds());
@@ -84,7 +109,7 @@ BOOST_AUTO_TEST_CASE(unilateral_needs_a_servo_as_fast_as_its_limits) {
   const Robot robot = youbot();
   const auto list = [&](double servo_gain, LimitMethod method) {
     const JointLimits limits(robot, {.gain = 2.0, .servo_gain = servo_gain});
-    return torque_conditions(robot, limits, method, 0.05, 1e-3, Vector::Constant(8, 1e3));
+    return torque_conditions(robot, limits, method, 0.1 * kHeadroom, 1e-3, Vector::Constant(8, 1e3));
   };
   const auto slow = list(1.9, LimitMethod::unilateral);
   const Condition* servo = find(slow, "as fast as the limits", "");
@@ -169,7 +194,7 @@ BOOST_AUTO_TEST_CASE(bounds_keep_a_joint_inside_at_the_longest_period) {
   for (int i = 0; i <= 2000; ++i) {
     q[kJoint] = upper - 0.4 * i / 2000.0;
     limits.update(q);
-    BOOST_TEST(q[kJoint] + limits.motion_upper()[kJoint] / limits.gain() <= upper);
+    BOOST_TEST(q[kJoint] + limits.motion_upper()[kJoint] / limits.gain(kJoint) <= upper);
   }
 }
 

@@ -208,7 +208,7 @@ BOOST_AUTO_TEST_CASE(blended_rows_keep_the_limit_at_the_conditions_edge) {
     JointLimits limits(robot, {.buffer = 0.3, .gain = kGain, .servo_gain = kServo});
     double buffer = 0.3;
     for (const Condition& condition :
-         torque_conditions(robot, limits, LimitMethod::chain, 0.5, dt, kStrong)) {
+         torque_conditions(robot, limits, LimitMethod::chain, Vector::Constant(8, 0.5), dt, kStrong)) {
       if (condition.joint == "arm_joint_5" && condition.name == "buffer wide enough for the period") {
         BOOST_TEST(condition.holds());
         buffer = 1.02 * condition.value;
@@ -224,7 +224,7 @@ BOOST_AUTO_TEST_CASE(conditions_name_what_fails) {
   JointLimits limits(robot, {.buffer = 0.01, .gain = kGain, .servo_gain = kServo});
   bool named = false;
   for (const Condition& condition :
-       torque_conditions(robot, limits, LimitMethod::chain, 0.5, 0.02, kStrong)) {
+       torque_conditions(robot, limits, LimitMethod::chain, Vector::Constant(8, 0.5), 0.02, kStrong)) {
     named = named || (!condition.holds() && condition.joint == "arm_joint_2" &&
                       condition.advice.find("raise the buffer of arm_joint_2") != std::string::npos);
   }

@@ -202,7 +202,7 @@ def test_gain_left_open_is_what_the_drive_can_brake_with(tmp_path: Path) -> None
     file.write_text(LIMITED.format(inertial=HEAVY, velocity=2, effort=30))
     controller = tope.Controller(tope.Robot.from_urdf(file), mode="torque", dt=1e-3)
     authority = (30 - 4 * 9.81 * 0.5) / (4 * 0.25 + 0.1)  # stretched out
-    assert controller.limit_gain == pytest.approx(0.8 * authority / 2, rel=1e-3)
+    assert controller.limit_gains[0] == pytest.approx(0.8 * authority / 2, rel=1e-3)
 
 
 def test_torque_mode_refuses_joint_weights() -> None:

@@ -129,7 +129,7 @@ BOOST_AUTO_TEST_CASE(a_refused_reading_changes_nothing) {
   ClosedLoop loop(velocity_scenario());
   run(loop, 100);
   check_error([&] { loop.adopt(velocity_scenario({{"limits.gain", "5000"}})); }, {"limits are not safe"});
-  BOOST_TEST(loop.controller().limits().gain() == 10.0);
+  BOOST_TEST(loop.controller().limits().gain(0) == 10.0);
   run(loop, 100);
   BOOST_TEST((loop.task(0) != nullptr));
 }

@@ -100,6 +100,7 @@ class Controller {
   bool replaced(std::size_t row) const;
   void advance_tasks(double t);
   LawOptions law_options() const;
+  void share_headroom();
   void rebuild();
   bool valid(const VectorArg& q, const VectorArg& v, double t, const Eigen::Ref<Vector>& u) const;
   bool torque_mode() const { return options_.mode == Mode::torque; }

@@ -22,7 +22,8 @@ enum class NullSpace {
   zero_torque,  ///< nothing, as in the paper: the null space falls and drifts
 };
 
-/// Unilateral::Options; what is unset is chosen for the mode, since the units differ, and for the robot's bounds.
+/// Unilateral::Options; what is unset is chosen for the mode, since the units differ. An unset headroom is smaller for
+/// joints whose bounds leave less room.
 struct UnilateralOptions {
   std::optional<double> damping{};
   std::optional<double> fine_damping{};
@@ -30,7 +31,7 @@ struct UnilateralOptions {
   std::optional<double> lock{};
   std::optional<double> headroom{};
 
-  Unilateral::Options resolved(Mode mode, const JointLimits& limits) const;
+  Unilateral::Options resolved(Mode mode) const;
 };
 
 struct LimitOptions {

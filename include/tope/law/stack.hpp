@@ -29,6 +29,7 @@ struct Stack {
   Vector limit_target;       ///< motion asked for by the limit row where it is active (n)
   Vector motion_lower;       ///< bounds of the motion (n), for the unilateral law
   Vector motion_upper;
+  Vector headroom_share;        ///< of the unilateral law's headroom, for each joint's bounds (n)
   std::vector<TaskRows> tasks;  ///< sorted by level
 
   /// Largest number of rows that one level can have.

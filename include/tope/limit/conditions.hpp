@@ -22,21 +22,21 @@ struct Condition {
 };
 
 /// The inequalities of velocity mode at period dt [s] for a method; none for a method that promises nothing.
-/// `headroom` is the unilateral law's.
+/// `headroom` (n) is the unilateral law's.
 std::vector<Condition> velocity_conditions(const Robot& robot, const JointLimits& limits, LimitMethod method,
-                                           double headroom, double dt);
+                                           const Vector& headroom, double dt);
 
 /// The same of torque mode, for the rows measured on the predicted position and for the unilateral law. `authority` (n)
 /// is what each drive can brake with, braking_authority() [rad/s2 or m/s2].
 std::vector<Condition> torque_conditions(const Robot& robot, const JointLimits& limits, LimitMethod method,
-                                         double headroom, double dt, const Vector& authority);
+                                         const Vector& headroom, double dt, const Vector& authority);
 
-/// A headroom for the unilateral law: `most`, or half of the largest that leaves every limited joint an interior, when
-/// that is less [rad/s or m/s; of second order: per second more].
-double suitable_headroom(const JointLimits& limits, bool second_order, double most);
+/// A joint's headroom for the unilateral law: `most`, or half of the largest that leaves it an interior, when that is less
+/// [rad/s or m/s; of second order: per second more].
+double suitable_headroom(const JointLimits& limits, int joint, bool second_order, double most);
 
-/// Largest gain of the limits [1/s], up to JointLimits::default_gain, that leaves a fifth of every limited joint's
-/// authority (n) unused.
-double braking_gain(const JointLimits& limits, LimitMethod method, const Vector& authority);
+/// Largest gain of a joint's limits [1/s], up to JointLimits::default_gain and the servo's, that leaves a fifth of what its
+/// drive can brake with (authority) unused and, for methods with rows, both rows idle at rest.
+double braking_gain(const JointLimits& limits, LimitMethod method, int joint, double authority);
 
 }  // namespace tope

@@ -21,10 +21,11 @@ struct JointLimitOptions {
   double buffer = 0.1;                      ///< beta: width of the zone inside each limit [rad or m]
   std::map<std::string, double> buffers{};  ///< joints with a buffer of their own
   /// lambda, gamma_1: speed allowed or asked for per distance [1/s]. Unset: JointLimits::default_gain; a controller in
-  /// torque mode takes less where the motors could not brake.
+  /// torque mode takes less for a joint whose motor could not brake.
   std::optional<double> gain{};
-  Ramp ramp = Ramp::raised_cosine;  ///< how activations rise across the buffer
-  double servo_gain = 10.0;         ///< gamma_2: how fast speed returns below the envelope, torque mode [1/s]
+  std::map<std::string, double> gains{};  ///< joints with a gain of their own [1/s]
+  Ramp ramp = Ramp::raised_cosine;        ///< how activations rise across the buffer
+  double servo_gain = 10.0;  ///< gamma_2: how fast speed returns below the envelope, torque mode [1/s]
   Measure measure = Measure::predicted;  ///< of the activations in torque mode
   double margin = 1e-3;                  ///< m: distance kept from the limit by the unilateral law [rad or m]
 };
@@ -97,7 +98,10 @@ class JointLimits {
   const Vector& upper() const { return upper_; }
   const Vector& velocity_limit() const { return velocity_limit_; }
   double buffer(int joint) const { return buffer_[joint]; }
-  double gain() const { return gain_; }  ///< [1/s]
+  const Vector& gains() const { return gain_; }             ///< of each joint (n) [1/s]
+  double gain(int joint) const { return gain_[joint]; }     ///< [1/s]
+  double least_gain() const { return gain_.minCoeff(); }    ///< of all joints [1/s]
+  double largest_gain() const { return gain_.maxCoeff(); }  ///< of all joints [1/s]
   const JointLimitOptions& options() const { return options_; }
   /// Torque mode: V of a joint at `distance` from a limit that rests [rad/s or m/s]; zero at the limit.
   double allowed_speed(int joint, double distance) const;
@@ -120,7 +124,7 @@ class JointLimits {
   void note_distances(int joint, double to_upper, double to_lower);
 
   JointLimitOptions options_;
-  double gain_;
+  Vector gain_;
   Vector lower_;
   Vector upper_;
   Vector lower_rate_;
@@ -134,7 +138,7 @@ class JointLimits {
   Vector motion_upper_;
   std::vector<char> near_upper_;  // 1 where the position limit sets motion_upper_, not the speed limit
   std::vector<char> near_lower_;
-  double engagement_scale_;  // slack per buffer at which engagement() begins
+  Vector engagement_slack_;  // at which engagement() begins
   int beyond_ = -1;
   double furthest_beyond_ = 0.0;  // how far that joint is beyond its limit
 };
