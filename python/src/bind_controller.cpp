@@ -140,7 +140,7 @@ void bind_controller(nb::module_& module) {
           "__init__",
           [](Controller* self, const Robot& robot, const std::string& mode, double dt,
              const LimitOptions& limits, const std::vector<double>& joint_weights,
-             const std::string& null_space, const std::string& wheel_distribution) {
+             const std::string& null_space, bool midpoint, const std::string& wheel_distribution) {
             robot.check_bounds();
             new (self) Controller(
                 robot, {.mode = static_cast<Mode>(choice("mode", mode, {"velocity", "torque"})),
@@ -149,12 +149,13 @@ void bind_controller(nb::module_& module) {
                         .singularities = {},
                         .null_space = static_cast<NullSpace>(
                             choice("null_space", null_space, {"compensated", "zero_torque"})),
+                        .midpoint = midpoint,
                         .wheel_distribution = static_cast<WheelDistribution>(choice(
                             "wheel_distribution", wheel_distribution, {"minimum_norm", "minimum_peak"})),
                         .joint_weights = joint_weights});
           },
           "robot"_a, nb::kw_only(), "mode"_a, "dt"_a, "limits"_a = LimitOptions{},
-          "joint_weights"_a = std::vector<double>{}, "null_space"_a = "compensated",
+          "joint_weights"_a = std::vector<double>{}, "null_space"_a = "compensated", "midpoint"_a = true,
           "wheel_distribution"_a = "minimum_norm", "Takes a copy of the robot with its bounds as they are.")
       .def(
           "add",

@@ -95,7 +95,7 @@ class RobotTree:
 
 def robot_tree(robot: Mapping[str, Any]) -> RobotTree:
     """The tree of a scenario's robot as `describe` tells of it; raises Error if its URDF is broken."""
-    return read_urdf(robot["urdf"], robot["base"])
+    return read_urdf(robot["urdf"], robot.get("base"))
 
 
 def read_urdf(path: str | os.PathLike[str], base: str | None = None) -> RobotTree:

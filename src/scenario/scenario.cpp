@@ -217,6 +217,8 @@ void read_torque_options(const YamlReader& yaml, ControllerOptions& options) {
   static const std::vector<std::string> null_spaces{"compensated", "zero_torque"};
   options.null_space = static_cast<NullSpace>(
       choice(yaml, "null_space", yaml.text("null_space", null_spaces[0]), null_spaces));
+  static const std::vector<std::string> switches{"false", "true"};
+  options.midpoint = choice(yaml, "midpoint", yaml.text("midpoint", "true"), switches) == 1;
   static const std::vector<std::string> distributions{"minimum_norm", "minimum_peak"};
   options.wheel_distribution = static_cast<WheelDistribution>(
       choice(yaml, "wheel_distribution", yaml.text("wheel_distribution", distributions[0]), distributions));

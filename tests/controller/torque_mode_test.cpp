@@ -1,6 +1,7 @@
 // The controller in torque mode: tasks get the acceleration they ask for, the bias is always compensated, bounds and
 // limits hold in closed loop with the rigid-body plant, no allocation, bad input. The paper's law is checked against
 // Pinocchio's Python (tests/python/test_torque.py). Not here: the law itself (law room).
+#include "support/loop.hpp"
 #include "support/no_allocation.hpp"
 #include "support/robots.hpp"
 
@@ -10,9 +11,11 @@
 #include <tope/task/damping.hpp>
 #include <tope/task/frame_orientation.hpp>
 #include <tope/task/frame_position.hpp>
+#include <tope/task/posture.hpp>
 
 #include <boost/test/unit_test.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -63,7 +66,7 @@ BOOST_AUTO_TEST_CASE(task_gets_its_acceleration) {
       const Vector q = random_position(random, robot, 0.5);
       const Vector v = 0.2 * random.vector(8);
       Controller controller(robot, options(LimitMethod::none));
-      terms.update_dynamics(q, v);
+      terms.update_dynamics(q + 0.5 * controller.options().dt * v, v);
       const Vector3 target = terms.frame_position(robot.frame_index("ee")) + 0.02 * Vector3(random.vector(3));
       const TaskHandle handle = controller.add(1, FramePosition(robot, "ee", target));
       Vector tau(8);
@@ -76,6 +79,37 @@ BOOST_AUTO_TEST_CASE(task_gets_its_acceleration) {
       BOOST_TEST((task.jacobian() * acceleration - task.acceleration()).norm() <= 1e-9);
     }
   }
+}
+
+/// Largest difference between the acceleration asked for and the one on average, over a swing of the whole arm.
+double missed_acceleration(double dt, bool midpoint) {
+  Robot robot = packaged_robot("tiago");  // whose wrist weighs next to nothing
+  robot.set_effort_limit(Vector::Constant(robot.nv(), 1e4));
+  Random random(1);
+  const ControllerOptions options{
+      .mode = Mode::torque, .dt = dt, .limits = {.method = LimitMethod::none}, .midpoint = midpoint};
+  Loop loop(robot, options, random_position(random, robot, 0.05));
+  const TaskHandle swing = loop.controller.add(1, Posture(robot, random_position(random, robot, 0.05)));
+  double missed = 0.0;
+  while (loop.t < 0.4) {
+    const Vector before = loop.v;
+    loop.step();
+    const Vector mean = (loop.v - before) / dt;
+    missed = std::max(missed, (mean - loop.controller.task(swing).acceleration()).cwiseAbs().maxCoeff());
+  }
+  return missed;
+}
+
+BOOST_AUTO_TEST_CASE(the_middle_of_the_period_makes_accelerations_exact_to_second_order) {
+  const double coarse = missed_acceleration(4e-3, true);
+  const double fine = missed_acceleration(2e-3, true);
+  BOOST_TEST_MESSAGE("missed by " << coarse << " at 4 ms, " << fine << " at 2 ms");
+  BOOST_TEST(coarse >= 3.5 * fine);
+  const double measured_coarse = missed_acceleration(4e-3, false);
+  const double measured_fine = missed_acceleration(2e-3, false);
+  BOOST_TEST_MESSAGE("at the measured state by " << measured_coarse << ", " << measured_fine);
+  BOOST_TEST(measured_coarse < 2.5 * measured_fine);
+  BOOST_TEST(measured_fine >= 20.0 * fine);
 }
 
 BOOST_AUTO_TEST_CASE(closed_loop_keeps_limits_and_bounds) {

@@ -64,7 +64,7 @@ class Controller {
   /// How active each joint's upper and lower limit is, 0 to 1 (n).
   const Vector& upper_activation() const { return upper_activation_; }
   const Vector& lower_activation() const { return lower_activation_; }
-  /// The task as of the last update. Errors: Error for an unknown handle.
+  /// The task as of the last update (options.midpoint: in the middle of the period after it). Errors: Error for an unknown handle.
   const Task& task(TaskHandle handle) const;
   /// How far a task is present, 0 to 1; while it moves or is replaced, how far that has got.
   double activation(TaskHandle handle) const;
@@ -105,6 +105,7 @@ class Controller {
   bool valid(const VectorArg& q, const VectorArg& v, double t, const Eigen::Ref<Vector>& u) const;
   bool torque_mode() const { return options_.mode == Mode::torque; }
   void stand_still(Eigen::Ref<Vector> u) const;
+  void evaluate_dynamics(const VectorArg& q, const VectorArg& v);
   void fill_limits(const VectorArg& q, const VectorArg& v);
   void fill_tasks(double t);
   void observe_tasks();
@@ -135,6 +136,8 @@ class Controller {
   Vector command_lower_;
   Vector command_upper_;
   TorqueBounds torque_bounds_;
+  Vector middle_q_;  // expected in the middle of the period, torque mode
+  Vector middle_v_;
   Vector motion_;        // velocity or acceleration that the last command asked for
   Vector limit_motion_;  // its part that serves the limits alone
   Vector bias_y_;        // L^-1 h

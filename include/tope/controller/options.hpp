@@ -46,8 +46,11 @@ struct ControllerOptions {
   Mode mode = Mode::velocity;
   double dt = 1e-3;  ///< period of the loop [s]
   LimitOptions limits{};
-  Hierarchy::Options singularities{};                                      ///< of every method but unilateral
-  NullSpace null_space = NullSpace::compensated;                           ///< torque mode
+  Hierarchy::Options singularities{};             ///< of every method but unilateral
+  NullSpace null_space = NullSpace::compensated;  ///< torque mode
+  /// Torque mode: tasks and dynamics where the robot will be in the middle of the coming period, given its velocity and
+  /// the acceleration asked for last; false: at the measured state, where joints of little inertia drift with the period.
+  bool midpoint = true;
   WheelDistribution wheel_distribution = WheelDistribution::minimum_norm;  ///< torque mode
   /// Velocity mode: cost of each joint's motion (nv), positive: the law minimises sum weight_j v_j^2 where tasks
   /// leave a choice. Empty: all ones.
