@@ -9,6 +9,7 @@
 #include <tope/task/frame_position.hpp>
 #include <tope/task/pointing.hpp>
 #include <tope/task/posture.hpp>
+#include <tope/task/relative_pose.hpp>
 #include <tope/task/rotation_error.hpp>
 #include <tope/task/selected_rows.hpp>
 
@@ -117,6 +118,21 @@ BOOST_AUTO_TEST_CASE(center_of_mass_accelerates) {
   Random random(18);
   CenterOfMass moving(robot, moving_along_sine(Vector3(random.vector(3)), Vector3(random.vector(3)), 0.5));
   check_second_order(robot, moving, 50);
+}
+
+BOOST_AUTO_TEST_CASE(relative_pose_accelerates) {
+  const Robot robot = youbot();
+  Random random(20);
+  for (const auto& [frame, seen_from] :
+       {std::pair{"ee", "base_link"}, {"arm_link_2", "ee"}, {"base_link", "arm_link_4"}}) {
+    RelativePose moving(
+        robot, frame, seen_from,
+        {.position = moving_along_sine(Vector3(random.vector(3)), Vector3(random.vector(3)), 0.3),
+         .rotation = spinning(random.rotation(), random.vector(3, 0.4))});
+    check_second_order(robot, moving, 100);
+    RelativePose position(robot, frame, seen_from, {.position = PointTarget{random.vector(3)}});
+    check_second_order(robot, position, 50);
+  }
 }
 
 BOOST_AUTO_TEST_CASE(selected_rows_accelerate) {

@@ -85,7 +85,8 @@ class Task {
 
   /// Fills error_, jacobian_ and feedforward_.
   virtual void evaluate(const RobotTerms& terms, double t) = 0;
-  /// Fills drift_, after evaluate() and error_rate_. Tasks whose Jacobian and target stand still have none.
+  /// Fills drift_, after evaluate() and error_rate_, which a task whose J leaves joints out mends. Tasks whose Jacobian
+  /// and target stand still have no drift.
   virtual void evaluate_drift(const RobotTerms& /*terms*/, double /*t*/) {}
   /// For a task made of another: evaluates that one without its reference; then, if needed, its error_rate() and
   /// drift().
