@@ -13,16 +13,6 @@
 namespace tope {
 namespace {
 
-/// Runs `build` and gives an error that names no file the place of `key`.
-template <typename Build>
-auto located(const YamlReader& yaml, const std::string& key, Build build) {
-  try {
-    return build();
-  } catch (const ConfigError& error) {
-    yaml.fail(key, error.what());
-  }
-}
-
 Robot read_robot(const YamlReader& yaml, Scenario& scenario) {
   const std::filesystem::path urdf = yaml.path("urdf");
   scenario.urdf = std::filesystem::absolute(urdf).lexically_normal();

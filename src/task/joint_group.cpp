@@ -1,9 +1,10 @@
+#include "generic_position.hpp"
+
 #include <tope/common/error.hpp>
 #include <tope/task/joint_group.hpp>
 #include <tope/task/selected_rows.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace tope {
 namespace {
@@ -39,11 +40,7 @@ JointGroup::JointGroup(const Robot& robot, const Task& task, const std::vector<s
 /// A row without a joint could never be served, and would count as lost to a singularity in every cycle.
 void JointGroup::require_moved_rows(const Robot& robot) {
   RobotTerms terms(robot);
-  Vector q(robot.nq());
-  for (int j = 0; j < robot.nq(); ++j) {
-    q[j] = std::sin(1.0 + 1.7 * j);  // a state like any other
-  }
-  terms.update(q, Vector::Zero(robot.nv()));
+  terms.update(generic_position(robot), Vector::Zero(robot.nv()));
   evaluate(terms, 0.0);
   for (Eigen::Index row = 0; row < jacobian_.rows(); ++row) {
     if (jacobian_.row(row).isZero(1e-9)) {

@@ -1,5 +1,5 @@
+#include "../reference/target_checks.hpp"
 #include "orientation_rows.hpp"
-#include "target_checks.hpp"
 
 #include <tope/common/error.hpp>
 #include <tope/task/relative_pose.hpp>

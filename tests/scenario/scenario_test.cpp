@@ -10,6 +10,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 
 namespace tope::test {
@@ -178,6 +179,87 @@ BOOST_AUTO_TEST_CASE(tasks_point_move_the_centre_of_mass_and_keep_rows) {
   check_refused(old, replaced(com, "[0, 1]", "[0, 3]"), {":24: tasks.1.rows", "row 3", "rows 0 to 2"});
   check_refused(old, replaced(com, "[0, 1]", "[0, 0]"), {":24: tasks.1.rows", "row 0 is named twice"});
   check_refused(old, replaced(com, "[0, 1]", "[0.5]"), {":24: tasks.1.rows: expected whole numbers"});
+}
+
+/// Task 1 of the good scenario, and what may stand in its place.
+const std::string kReach =
+    "type: frame_position\n    level: 2\n    frame: ee\n    target: {position: [0.5, 0.1, 0.1]}";
+
+std::shared_ptr<const Task> second_task(const std::string& task) {
+  const TemporaryFile file("scenario.yaml", replaced(good_scenario(), kReach, task));
+  return Scenario::load(file.path()).tasks[1].task;
+}
+
+BOOST_AUTO_TEST_CASE(relative_poses_take_what_they_are_given) {
+  const std::string relative =
+      "type: relative_pose\n    level: 2\n    frame: ee\n    seen_from: base_link\n    target: ";
+  BOOST_TEST(second_task(relative + "{position: [0.3, 0, 0.2]}")->error_unit() == "m");
+  BOOST_TEST(
+      second_task(relative + "{quaternion: [1, 0, 0, 0], angular_velocity: [0, 0, 1]}")->error_unit() ==
+      "rad");
+  BOOST_TEST(second_task(relative + "{position: [0.3, 0, 0.2], quaternion: [1, 0, 0, 0]}")->size() == 6);
+  BOOST_TEST(
+      second_task(relative + "{waypoints: [{at: 0, position: [0, 0, 0]}, {at: 1, position: [1, 0, 0]}]}")
+          ->size() == 3);
+  check_refused(kReach, relative + "{}", {":25: tasks.1.target: RelativePose: target: names neither"});
+  check_refused(kReach, relative + "{position: [0, 0, 0], angular_velocity: [0, 0, 1]}",
+                {":25: tasks.1.target.angular_velocity: unknown key"});
+  check_refused(kReach, replaced(relative + "{position: [0, 0, 0]}", "base_link", "base_lnk"),
+                {":24: tasks.1.seen_from", "unknown frame 'base_lnk'", "'base_link'?"});
+}
+
+BOOST_AUTO_TEST_CASE(manipulability_says_of_what) {
+  const std::string raise = "type: manipulability\n    level: 2\n    frame: ee\n    target: 0.05";
+  const std::string of =
+      raise + "\n    of: {rows: [0, 1, 2], joints: [arm_joint_2, arm_joint_3, arm_joint_4]}";
+  BOOST_TEST(second_task(raise)->size() == 1);
+  BOOST_TEST(second_task(raise)->type() == "manipulability");
+  BOOST_TEST(!second_task(raise)->is_goal());
+  check_refused(kReach, of, {":25: tasks.1.of: Manipulability: the joints cannot move frame 'ee'"});
+  check_refused(kReach, replaced(of, "[0, 1, 2]", "[0, 1, 7]"),
+                {":25: tasks.1.of: Manipulability: rows", "7"});
+  check_refused(kReach, replaced(of, "[0, 1, 2]", "[0, 1, 0.5]"), {":25: tasks.1.of.rows: expected whole"});
+  check_refused(kReach, replaced(raise, "0.05", "-1"), {":24: tasks.1.target: must be positive"});
+}
+
+BOOST_AUTO_TEST_CASE(any_task_may_have_a_group_of_joints) {
+  const std::string arm = kReach + "\n    joints: [arm_joint_1, arm_joint_2, arm_joint_3]";
+  const auto task = second_task(arm);
+  BOOST_TEST(task->type() == "frame_position");
+  BOOST_TEST(task->size() == 3);
+  BOOST_TEST(second_task(arm + "\n    rows: [2]")->size() == 1);
+  check_refused(kReach, replaced(arm, "arm_joint_3", "arm_joint_9"),
+                {":25: tasks.1.joints: unknown joint 'arm_joint_9'"});
+  check_refused(kReach, kReach + "\n    joints: [base_x]",
+                {":25: tasks.1.joints: JointGroup: no joint of the group moves row 1 of frame_position"});
+}
+
+BOOST_AUTO_TEST_CASE(targets_pass_waypoints) {
+  const auto goal = [](const std::string& type, const std::string& waypoints, double t) {
+    return *second_task("type: " + type + "\n    level: 2\n    frame: ee\n    target: {waypoints: [" +
+                        waypoints + "]}")
+                ->frame_goal(t);
+  };
+  const std::string points =
+      "{at: 0, position: [0, 0, 0]}, {at: 1, position: [1, 2, 3]}, {at: 3, position: [1, 0, 0]}";
+  BOOST_TEST((goal("frame_position", points, 1.0).position->array() == Vector3(1.0, 2.0, 3.0).array()).all());
+  const std::string poses =
+      "{at: 0, position: [0, 0, 0], quaternion: [1, 0, 0, 0]}, {at: 1, position: [1, 2, 3], quaternion: "
+      "[0.707107, 0, 0, 0.707107]}";
+  BOOST_TEST((goal("frame_pose", poses, 2.0).position->array() == Vector3(1.0, 2.0, 3.0).array()).all());
+  BOOST_TEST((goal("frame_pose", poses, 2.0).rotation->col(0) - Vector3::UnitY()).norm() <= 1e-6);
+  const auto refused = [](const std::string& waypoints, std::initializer_list<std::string> parts) {
+    check_refused(kReach, replaced(kReach, "position: [0.5, 0.1, 0.1]", "waypoints: " + waypoints), parts);
+  };
+  refused("[{at: 0, position: [0, 0, 0]}]", {":24: tasks.1.target.waypoints: expected at least 2 waypoints"});
+  refused("[{at: 1, position: [0, 0, 0]}, {at: 1, position: [0, 0, 1]}]",
+          {":24: tasks.1.target.waypoints: waypoint 1: its time", "later"});
+  refused("[{position: [0, 0, 0]}, {at: 1, position: [0, 0, 1]}]",
+          {":24: tasks.1.target.waypoints.0.at: is missing"});
+  refused("[{at: 0, position: [0, 0, 0]}, {at: 1, position: [0, 0, 1], quaternion: [1, 0, 0, 0]}]",
+          {":24: tasks.1.target.waypoints.1.quaternion: unknown key"});
+  refused("[{at: 0, position: [0, 0, 0]}, {at: 1, position: [0, 0, 1]}], velocity: [1, 0, 0]",
+          {":24: tasks.1.target.velocity: unknown key"});
 }
 
 BOOST_AUTO_TEST_CASE(limit_servo_takes_one_pair_of_gains) {

@@ -9,15 +9,18 @@
 #include <tope/task/frame_position.hpp>
 #include <tope/task/joint_group.hpp>
 #include <tope/task/joint_position.hpp>
+#include <tope/task/manipulability.hpp>
 #include <tope/task/pointing.hpp>
 #include <tope/task/relative_pose.hpp>
 #include <tope/task/selected_rows.hpp>
 
+#include <Eigen/Cholesky>
 #include <boost/test/unit_test.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tope::test {
@@ -190,6 +193,64 @@ BOOST_AUTO_TEST_CASE(lower_level_holds_what_is_outside_a_group_still) {
   loop.run(5.0);
   BOOST_TEST(loop.controller.task(reach).error().norm() < 1e-4);
   BOOST_TEST(loop.q.head(3).norm() < 1e-4);
+}
+
+/// The hand stays while the arm's manipulability of position is raised to a target, from a stretched arm.
+struct RaisingLoop : Loop {
+  RaisingLoop(Mode mode, double target) : Loop(youbot(), {.mode = mode}) {
+    q << 0.0, 0.0, 0.0, 0.0, 0.4, 0.3, 0.2, 0.0;
+    if (body) {
+      body->reset(q);
+    }
+    const Exponential reference(3.0);
+    hand = controller.add(1, FramePosition(robot, "ee", end_effector(*this), reference));
+    raise = controller.add(
+        2, Manipulability(robot, "ee", target, {.rows = {0, 1, 2}, .joints = kArm}, reference));
+    controller.add(3, Damping(robot));
+    command();
+    slope_at_start = slope();
+    while (t < 5.0) {
+      {
+        const NoAllocation guard("manipulability");
+        command();
+      }
+      follow();
+    }
+  }
+
+  double measure() const { return dynamic_cast<const Manipulability&>(controller.task(raise)).measure(); }
+
+  /// Length of w's gradient along what leaves the hand in place.
+  double slope() const {
+    const Matrix& jacobian = controller.task(hand).jacobian();
+    const Vector gradient = controller.task(raise).jacobian().row(0);
+    return (gradient -
+            jacobian.transpose() * (jacobian * jacobian.transpose()).llt().solve(jacobian * gradient))
+        .norm();
+  }
+
+  TaskHandle hand;
+  TaskHandle raise;
+  double slope_at_start = 0.0;
+};
+
+BOOST_AUTO_TEST_CASE(manipulability_rises_while_the_hand_stays) {
+  for (const Mode mode : {Mode::velocity, Mode::torque}) {
+    const RaisingLoop loop(mode, 0.016);  // from 0.011
+    BOOST_TEST(std::abs(loop.measure() - 0.016) < 1e-5);
+    BOOST_TEST(loop.controller.task(loop.hand).error().norm() < 1e-5);
+    BOOST_TEST(loop.v.norm() < 1e-3);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(manipulability_out_of_reach_climbs_to_the_top) {
+  for (const Mode mode : {Mode::velocity, Mode::torque}) {
+    const RaisingLoop loop(mode, 0.03);
+    BOOST_TEST(loop.measure() > 0.0175);
+    BOOST_TEST(loop.slope() < 0.1 * loop.slope_at_start);
+    BOOST_TEST(loop.v.norm() < 2e-2);
+    BOOST_TEST(loop.controller.task(loop.hand).error().norm() < 1e-5);
+  }
 }
 
 BOOST_AUTO_TEST_CASE(torques_reach_all_of_them) {

@@ -7,6 +7,7 @@
 #include <tope/task/frame_orientation.hpp>
 #include <tope/task/frame_pose.hpp>
 #include <tope/task/frame_position.hpp>
+#include <tope/task/manipulability.hpp>
 #include <tope/task/pointing.hpp>
 #include <tope/task/posture.hpp>
 #include <tope/task/relative_pose.hpp>
@@ -118,6 +119,21 @@ BOOST_AUTO_TEST_CASE(center_of_mass_accelerates) {
   Random random(18);
   CenterOfMass moving(robot, moving_along_sine(Vector3(random.vector(3)), Vector3(random.vector(3)), 0.5));
   check_second_order(robot, moving, 50);
+}
+
+BOOST_AUTO_TEST_CASE(manipulability_accelerates) {
+  const Robot robot = youbot();
+  Manipulability all(robot, "ee", 0.5);
+  check_second_order(robot, all, 50);
+  for (const char* frame : {"ee", "arm_link_4"}) {
+    Manipulability position(
+        robot, frame, 0.1,
+        {.rows = {0, 1, 2},
+         .joints = {"arm_joint_1", "arm_joint_2", "arm_joint_3", "arm_joint_4", "arm_joint_5"}});
+    check_second_order(robot, position, 50);
+    Manipulability one(robot, frame, 0.5, {.rows = {2}});
+    check_second_order(robot, one, 50);
+  }
 }
 
 BOOST_AUTO_TEST_CASE(relative_pose_accelerates) {

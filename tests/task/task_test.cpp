@@ -10,6 +10,7 @@
 #include <tope/task/frame_position.hpp>
 #include <tope/task/joint_group.hpp>
 #include <tope/task/joint_position.hpp>
+#include <tope/task/manipulability.hpp>
 #include <tope/task/pointing.hpp>
 #include <tope/task/posture.hpp>
 #include <tope/task/relative_pose.hpp>
@@ -62,6 +63,9 @@ double check_rates(const Robot& robot, Task& task, int seeds, double skip_above 
   BOOST_TEST_MESSAGE(task.type() << ": largest deviation " << largest);
   return largest;
 }
+
+const std::vector<std::string> kArm{"arm_joint_1", "arm_joint_2", "arm_joint_3", "arm_joint_4",
+                                    "arm_joint_5"};
 
 Target<RotationTarget> spinning_target(Random& random) {
   return spinning(random.rotation(), random.vector(3, 0.4));
@@ -226,6 +230,73 @@ BOOST_AUTO_TEST_CASE(joint_group_of_joint_rows_keeps_those_of_its_joints) {
   BOOST_TEST(arm.jacobian().sum() == 2.0);
   BOOST_TEST(!arm.is_goal());
   BOOST_TEST(!arm.is_motion());
+}
+
+/// sqrt(det(J J^T)) of some rows and columns of a frame's Jacobian.
+double yoshikawa(const RobotTerms& terms, int frame, const std::vector<int>& rows,
+                 const std::vector<int>& columns) {
+  Matrix jacobian(6, terms.velocity().size());
+  terms.frame_jacobian(frame, jacobian);
+  const Matrix part = jacobian(rows, columns);
+  return std::sqrt((part * part.transpose()).determinant());
+}
+
+BOOST_AUTO_TEST_CASE(manipulability_is_yoshikawas) {
+  const Robot robot = youbot();
+  const int ee = robot.frame_index("ee");
+  RobotTerms terms(robot);
+  Manipulability all(robot, "ee", 0.5);
+  Manipulability arm(robot, "ee", 0.02, {.rows = {2, 0, 1}, .joints = kArm});
+  for (int seed = 0; seed < 20; ++seed) {
+    Random random(seed);
+    terms.update(random_position(random, robot, 0.0), Vector::Zero(robot.nv()));
+    all.update(terms, 0.0);
+    arm.update(terms, 0.0);
+    const double expected = yoshikawa(terms, ee, {0, 1, 2, 3, 4, 5}, {0, 1, 2, 3, 4, 5, 6, 7});
+    BOOST_TEST(all.measure() == expected, boost::test_tools::tolerance(1e-9));
+    BOOST_TEST(arm.measure() == yoshikawa(terms, ee, {0, 1, 2}, {3, 4, 5, 6, 7}),
+               boost::test_tools::tolerance(1e-9));
+    // the target itself is where the error is zero
+    Manipulability there(robot, "ee", expected);
+    there.update(terms, 0.0);
+    BOOST_TEST(std::abs(there.error()[0]) <= 1e-12);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(manipulability_rates) {
+  const Robot robot = youbot();
+  Manipulability all(robot, "ee", 0.5);
+  check_rates(robot, all, 50);
+  for (const char* frame : {"ee", "arm_link_4"}) {
+    Manipulability position(robot, frame, 0.02, {.rows = {0, 1, 2}, .joints = kArm});
+    check_rates(robot, position, 50);
+    Manipulability mixed(robot, frame, 0.3, {.rows = {5, 1}});
+    check_rates(robot, mixed, 50);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(manipulability_is_smooth_through_a_singularity) {
+  const Robot robot = youbot();
+  RobotTerms terms(robot);
+  Manipulability task(robot, "ee", 0.02, {.rows = {0, 1, 2}, .joints = kArm});
+  const Vector upright = Vector::Zero(robot.nv());
+  const Vector bend = Vector::Unit(robot.nv(), 5);
+  double nearest = 1.0;
+  Vector last;
+  for (int i = -1000; i <= 1000; ++i) {
+    terms.update_dynamics(upright + 5e-5 * i * bend, bend);
+    task.update_second_order(terms, 0.0, Vector::Zero(robot.nv()));
+    nearest = std::min(nearest, task.measure());
+    const Vector row = task.jacobian().row(0);
+    BOOST_TEST(row.allFinite());
+    BOOST_TEST(task.drift().allFinite());
+    BOOST_TEST(task.rate().lpNorm<Eigen::Infinity>() <= 2.0);  // the gain
+    if (last.size() > 0) {
+      BOOST_TEST((row - last).norm() <= 5e-2);
+    }
+    last = row;
+  }
+  BOOST_TEST(nearest < 1e-6);
 }
 
 BOOST_AUTO_TEST_CASE(selected_rows_rates) {
@@ -429,6 +500,17 @@ BOOST_AUTO_TEST_CASE(bad_targets_are_refused) {
               {"RelativePose: rotation", "det R = -1"});
   check_error([&] { RelativePose(robot, "ee", "base_link", {.position = PointTarget{{0.0, NAN, 0.0}}}); },
               {"RelativePose: position", "finite"});
+  check_error([&] { Manipulability(robot, "ee", 0.0); }, {"Manipulability: target", "positive", "0.0"});
+  check_error([&] { Manipulability(robot, "hand", 1.0); }, {"unknown frame 'hand'"});
+  check_error([&] { Manipulability(robot, "ee", 1.0, {.rows = {}}); }, {"rows: names no row"});
+  check_error([&] { Manipulability(robot, "ee", 1.0, {.rows = {6}}); }, {"rows 0 to 5, got 6"});
+  check_error([&] { Manipulability(robot, "ee", 1.0, {.rows = {1, 1}}); }, {"row 1 is named twice"});
+  check_error([&] { Manipulability(robot, "ee", 1.0, {.joints = {"arm_joint_6"}}); },
+              {"unknown joint 'arm_joint_6'"});
+  check_error([&] { Manipulability(robot, "ee", 1.0, {.joints = {"base_x", "base_x"}}); },
+              {"'base_x' is named twice"});
+  check_error([&] { Manipulability(robot, "ee", 1.0, {.joints = kArm}); },
+              {"cannot move frame 'ee' along all of its 6 rows", "zero in every state"});
   check_error([&] { JointGroup(robot, position, {}); }, {"JointGroup", "names no joint"});
   check_error([&] { JointGroup(robot, Damping(robot), {}); }, {"JointGroup", "names no joint"});
   check_error([&] { JointGroup(robot, position, {"arm_joint_6"}); }, {"unknown joint 'arm_joint_6'"});

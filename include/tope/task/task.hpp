@@ -27,7 +27,7 @@ class Task {
 
   int size() const { return static_cast<int>(error_.size()); }
   virtual std::string_view type() const = 0;
-  /// "m", "rad", or "mixed" where rows differ.
+  /// "m", "rad", empty for a pure number, or "mixed" where rows differ.
   virtual std::string_view error_unit() const = 0;
   /// False for tasks that only take up freedom that is left (posture, damping).
   virtual bool is_goal() const { return true; }
