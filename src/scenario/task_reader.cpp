@@ -269,15 +269,9 @@ std::string blamed_key(const YamlReader& yaml, const std::string& message) {
 
 }  // namespace
 
-ScenarioTask read_task(const YamlReader& yaml, const Robot& robot) {
-  ScenarioTask task;
-  task.name = yaml.text("name");
-  task.level = yaml.integer("level");
-  if (task.level < 1) {
-    yaml.fail("level", "must be at least 1: limits are above all levels");
-  }
+std::shared_ptr<const Task> read_goal(const YamlReader& yaml, const Robot& robot) {
   try {
-    task.task = read_group(yaml, robot, read_rows(yaml, read_by_type(yaml, robot)));
+    return read_group(yaml, robot, read_rows(yaml, read_by_type(yaml, robot)));
   } catch (const ConfigError& error) {
     const std::string message = error.what();
     if (message.starts_with(yaml.file().string()) || message.starts_with("--set")) {
@@ -285,6 +279,21 @@ ScenarioTask read_task(const YamlReader& yaml, const Robot& robot) {
     }
     yaml.fail(blamed_key(yaml, message), message);
   }
+}
+
+int read_level(const YamlReader& yaml) {
+  const int level = yaml.integer("level");
+  if (level < 1) {
+    yaml.fail("level", "must be at least 1: limits are above all levels");
+  }
+  return level;
+}
+
+ScenarioTask read_task(const YamlReader& yaml, const Robot& robot) {
+  ScenarioTask task;
+  task.name = yaml.text("name");
+  task.level = read_level(yaml);
+  task.task = read_goal(yaml, robot);
   task.tolerance = yaml.positive("tolerance", task.tolerance);
   yaml.finish();
   return task;

@@ -112,6 +112,18 @@ def test_paths_pass_their_waypoints(robot: tope.Robot) -> None:
     assert turn.at(0)[1] == pytest.approx(np.zeros(3))
 
 
+def test_scenario_with_changes_says_what_it_did() -> None:
+    run = tope.simulate(ROOT / "scenarios/youbot_task_changes.yaml", overrides={"duration": 5.0})
+    tasks = {task["name"]: task for task in run.scenario["tasks"]}
+    assert [tasks[name]["stays"] for name in ("orientation", "position", "look")] == [False, True, True]
+    assert run.log["a.orientation"][0] == 1
+    assert run.log["a.orientation"][-1] == 0
+    assert run.log["a.look"][[0, -1]] == pytest.approx([0, 1])
+    assert run.summary["task_error"]["orientation"]["measured"] is None
+    with pytest.raises(tope.ConfigError, match=r"youbot_task_changes.yaml:\d+: changes.0.remove: no task"):
+        tope.load_scenario(ROOT / "scenarios/youbot_task_changes.yaml", {"tasks.0.name": "turn"})
+
+
 def test_mistakes_are_named(robot: tope.Robot) -> None:
     c = tope.Controller(robot, mode="velocity", dt=1e-3)
     with pytest.raises(tope.ConfigError, match="axis: expected three numbers"):

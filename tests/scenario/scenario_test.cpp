@@ -262,6 +262,84 @@ BOOST_AUTO_TEST_CASE(targets_pass_waypoints) {
           {":24: tasks.1.target.velocity: unknown key"});
 }
 
+std::string with_changes(const std::string& changes) { return good_scenario() + "changes:\n" + changes; }
+
+void check_changes_refused(const std::string& changes, std::initializer_list<std::string> parts) {
+  BOOST_TEST_CONTEXT(changes) {
+    const TemporaryFile file("scenario.yaml", with_changes(changes));
+    check_error([&] { Scenario::load(file.path()); }, parts);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(changes_of_tasks_are_read) {
+  const TemporaryFile file("scenario.yaml",
+                           with_changes("  - {at: 0.5, remove: turn}\n"
+                                        "  - {at: 1, add: reach, over: 0.2}\n"
+                                        "  - {at: 1, move: reach, level: 5}\n"
+                                        "  - {at: 2, replace: reach, with: {type: frame_position, frame: ee, "
+                                        "target: {position: [0, 0, 1]}, "
+                                        "reference: {type: predefined_time, duration: 3, gain: 2}}}\n"));
+  const Scenario scenario = Scenario::load(file.path());
+  BOOST_TEST(scenario.changes.size() == 4U);
+  BOOST_TEST((scenario.changes[0].kind == TaskChange::Kind::remove));
+  BOOST_TEST(scenario.changes[1].task == 1U);
+  BOOST_TEST(scenario.changes[1].over == 0.2);
+  BOOST_TEST(scenario.changes[2].level == 5);
+  BOOST_TEST((*scenario.changes[3].with->frame_goal(0.0)->position == Vector3::UnitZ()));
+  const TaskCourse turn = scenario.course(0);
+  BOOST_TEST((turn.at_start && !turn.at_end && !turn.always));
+  BOOST_TEST(!turn.goal_time.has_value());  // it leaves
+  const TaskCourse reach = scenario.course(1);
+  BOOST_TEST((!reach.at_start && reach.at_end && !reach.always));
+  BOOST_TEST(*reach.goal_time == 5.0);
+  BOOST_TEST(reach.lowest_level == 5);
+  check_error([&] { scenario.build_controller().task({1}); },
+              {"no task with handle 1"});  // the start has one task
+}
+
+BOOST_AUTO_TEST_CASE(a_task_that_leaves_does_not_take_the_freedom_that_is_left) {
+  const std::string posture = replaced(
+      replaced(good_scenario(), kReach, "type: posture\n    level: 2\n    target: [0, 0, 0, 0, 0, 0, 0, 0]"),
+      "mode: velocity", "mode: torque");
+  const TemporaryFile stays("scenario.yaml", posture);
+  BOOST_TEST(Scenario::load(stays.path()).tasks.size() == 2U);
+  const TemporaryFile leaves("scenario.yaml", posture + "changes: [{at: 1, remove: reach}]\n");
+  BOOST_TEST(Scenario::load(leaves.path()).tasks.back().name == "damping");
+  const TemporaryFile sinks("scenario.yaml", replaced(good_scenario(), "mode: velocity", "mode: torque") +
+                                                 "changes: [{at: 1, move: turn, level: 7}]\n");
+  BOOST_TEST(Scenario::load(sinks.path()).tasks.back().level == 8);
+}
+
+BOOST_AUTO_TEST_CASE(changes_that_make_no_sense_are_refused) {
+  check_changes_refused("  - {at: 1, over: 2}\n",
+                        {"scenario.yaml:27: changes.0: says no change", "add, remove"});
+  check_changes_refused("  - {at: 1, add: turn, remove: reach}\n",
+                        {"scenario.yaml:27: changes.0.remove: is one change, and add another"});
+  check_changes_refused("  - {at: 1, remove: trun}\n",
+                        {"scenario.yaml:27: changes.0.remove: no task is named 'trun'", "'turn'?"});
+  check_changes_refused("  - {remove: turn}\n", {"changes.0.at: is missing"});
+  check_changes_refused("  - {at: -1, remove: turn}\n",
+                        {"scenario.yaml:27: changes.0.at: must not be negative"});
+  check_changes_refused("  - {at: 1, remove: turn, over: -1}\n", {"changes.0.over: must not be negative"});
+  check_changes_refused("  - {at: 1, remove: turn, level: 2}\n", {"changes.0.level: unknown key"});
+  check_changes_refused("  - {at: 1, move: turn}\n", {"changes.0.level: is missing"});
+  check_changes_refused("  - {at: 1, move: turn, level: 0}\n", {"changes.0.level: must be at least 1"});
+  check_changes_refused("  - {at: 1, remove: turn}\n  - {at: 0.5, remove: reach}\n",
+                        {"scenario.yaml:28: changes.1.at: is before the change above it"});
+  check_changes_refused("  - {at: 1, remove: turn}\n  - {at: 2, move: turn, level: 1}\n",
+                        {"scenario.yaml:28: changes.1.move: the task was removed before"});
+  check_changes_refused("  - {at: 1, move: turn, level: 1}\n  - {at: 2, add: turn}\n",
+                        {"scenario.yaml:28: changes.1.add: the task is there already"});
+  const std::string with =
+      "  - at: 1\n    replace: reach\n    with:\n      type: frame_position\n      frame: ee\n";
+  check_changes_refused(with + "      target: {position: [0, 0]}\n",
+                        {"scenario.yaml:32: changes.0.with.target.position: expected 3 numbers"});
+  check_changes_refused(with + "      target: {position: [0, 0, 0]}\n      level: 2\n",
+                        {"scenario.yaml:33: changes.0.with.level: unknown key"});
+  check_changes_refused(with + "      target: {position: [0, 0, 0]}\n      rows: [1]\n",
+                        {"changes.0.with: has 1 rows, task 'reach' has 3"});
+}
+
 BOOST_AUTO_TEST_CASE(limit_servo_takes_one_pair_of_gains) {
   const TemporaryFile file("scenario.yaml",
                            replaced(good_scenario(), "buffer: 0.12", "lambda_p: 80\n  lambda_v: 24"));
