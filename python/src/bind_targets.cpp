@@ -1,5 +1,6 @@
 #include "targets.hpp"
 
+#include <tope/reference/target_stream.hpp>
 #include <tope/reference/waypoints.hpp>
 
 #include <Eigen/Geometry>
@@ -33,7 +34,7 @@ Vector3 point_at(const nb::handle& target) {
   return numbers_from<Vector3>(target, "target", "a point of three numbers [m]");
 }
 
-/// A target that a Python function moves. What it raises inside the control loop must not cross it: the target stands
+/// A target that a Python function moves; the control loop calls it and waits for it. What it raises inside the control loop must not cross it: the target stands
 /// still, and Controller.update raises the error when the cycle is complete.
 template <typename Sample>
 Target<Sample> moving_target(std::function<Sample(double)> motion) {
@@ -68,6 +69,53 @@ std::vector<Waypoint> waypoints_from(const std::vector<double>& times, const nb:
   return waypoints;
 }
 
+void bind_streams(nb::module_& module) {
+  const StreamOptions usual;
+  nb::class_<PointStream>(
+      module, "PointStream",
+      "A target that comes in samples from outside the control loop, from another thread for example. "
+      "It goes on with a sample's velocity for up to `hold` seconds, then stops; a filter with a triple "
+      "pole at -`rate` [1/s] makes it smooth.")
+      .def(
+          "__init__",
+          [](PointStream* self, const nb::object& start, double rate, double hold) {
+            new (self) PointStream(point_at(start), StreamOptions{.rate = rate, .hold = hold});
+          },
+          "start"_a, nb::kw_only(), "rate"_a = usual.rate, "hold"_a = usual.hold,
+          "Rests at `start` [m] until the first sample.")
+      .def(
+          "put",
+          [](PointStream& self, double time, const nb::object& position, const nb::object& velocity) {
+            return self.put({.time = time, .position = point_at(position), .velocity = point_at(velocity)});
+          },
+          "time"_a, "position"_a, "velocity"_a = nb::make_tuple(0.0, 0.0, 0.0),
+          "A sample of that time [s, on the clock of Controller.update], position [m] and velocity [m/s]. "
+          "False, and "
+          "nothing changes, for what is not finite or no later than the one before.");
+  nb::class_<RotationStream>(module, "RotationStream",
+                             "The same as PointStream for a rotation, a matrix or a quaternion (w, x, y, z).")
+      .def(
+          "__init__",
+          [](RotationStream* self, const nb::object& start, double rate, double hold) {
+            new (self) RotationStream(rotation_from(start), StreamOptions{.rate = rate, .hold = hold});
+          },
+          "start"_a, nb::kw_only(), "rate"_a = usual.rate, "hold"_a = usual.hold,
+          "Rests at `start` until the first sample.")
+      .def(
+          "put",
+          [](RotationStream& self, double time, const nb::object& rotation,
+             const nb::object& angular_velocity) {
+            return self.put({.time = time,
+                             .rotation = rotation_from(rotation),
+                             .angular_velocity = point_at(angular_velocity)});
+          },
+          "time"_a, "rotation"_a, "angular_velocity"_a = nb::make_tuple(0.0, 0.0, 0.0),
+          "A sample of that time [s, on the clock of Controller.update], rotation and angular velocity along "
+          "the world's "
+          "axes [rad/s]. False, and nothing changes, for what is not finite, no rotation, or no later than "
+          "the one before.");
+}
+
 }  // namespace
 
 nb::object numbers_from(const nb::handle& values) {
@@ -77,6 +125,9 @@ nb::object numbers_from(const nb::handle& values) {
 Target<PointTarget> point_from(const nb::object& target) {
   if (Target<PointTarget> path{PointTarget{}}; nb::try_cast(target, path)) {
     return path;
+  }
+  if (nb::isinstance<PointStream>(target)) {
+    return nb::cast<const PointStream&>(target).target();
   }
   if (PyCallable_Check(target.ptr()) == 0) {
     return PointTarget{.position = point_at(target)};
@@ -90,6 +141,9 @@ Target<PointTarget> point_from(const nb::object& target) {
 Target<RotationTarget> rotating_from(const nb::object& target) {
   if (Target<RotationTarget> path{RotationTarget{}}; nb::try_cast(target, path)) {
     return path;
+  }
+  if (nb::isinstance<RotationStream>(target)) {
+    return nb::cast<const RotationStream&>(target).target();
   }
   if (PyCallable_Check(target.ptr()) == 0) {
     return RotationTarget{.rotation = rotation_from(target)};
@@ -138,6 +192,7 @@ void bind_targets(nb::module_& module) {
           },
           "t"_a,
           "Rotation, angular velocity [rad/s] and acceleration [rad/s2] at a time [s], along fixed axes.");
+  bind_streams(module);
 }
 
 }  // namespace tope::python

@@ -56,7 +56,8 @@ void bind_tasks(nb::module_& module) {
                         }};
       },
       nb::kw_only(), "frame"_a, "target"_a, "reference"_a = Exponential{},
-      "Brings the origin of a frame to a point [m], or to where a PointPath or a function t -> (point, "
+      "Brings the origin of a frame to a point [m], or to where a PointPath, a PointStream or a function t "
+      "-> (point, "
       "velocity) "
       "moves it.");
   module.def(

@@ -21,9 +21,9 @@ T numbers_from(const nanobind::handle& values, const char* what, const char* exp
   return result;
 }
 
-/// A point, a path, or a function of time that returns a point and its velocity.
+/// A point, a path, a stream, or a function of time that returns a point and its velocity.
 Target<PointTarget> point_from(const nanobind::object& target);
-/// A rotation, a path, or a function of time that returns a rotation and its angular velocity.
+/// A rotation, a path, a stream, or a function of time that returns a rotation and its angular velocity.
 Target<RotationTarget> rotating_from(const nanobind::object& target);
 
 }  // namespace tope::python

@@ -91,6 +91,32 @@ class RotationPath:
         Rotation, angular velocity [rad/s] and acceleration [rad/s2] at a time [s], along fixed axes.
         """
 
+class PointStream:
+    """
+    A target that comes in samples from outside the control loop, from another thread for example. It goes on with a sample's velocity for up to `hold` seconds, then stops; a filter with a triple pole at -`rate` [1/s] makes it smooth.
+    """
+
+    def __init__(self, start: object, *, rate: float = 20.0, hold: float = 0.1) -> None:
+        """Rests at `start` [m] until the first sample."""
+
+    def put(self, time: float, position: object, velocity: object = (0.0, 0.0, 0.0)) -> bool:
+        """
+        A sample of that time [s, on the clock of Controller.update], position [m] and velocity [m/s]. False, and nothing changes, for what is not finite or no later than the one before.
+        """
+
+class RotationStream:
+    """
+    The same as PointStream for a rotation, a matrix or a quaternion (w, x, y, z).
+    """
+
+    def __init__(self, start: object, *, rate: float = 20.0, hold: float = 0.1) -> None:
+        """Rests at `start` until the first sample."""
+
+    def put(self, time: float, rotation: object, angular_velocity: object = (0.0, 0.0, 0.0)) -> bool:
+        """
+        A sample of that time [s, on the clock of Controller.update], rotation and angular velocity along the world's axes [rad/s]. False, and nothing changes, for what is not finite, no rotation, or no later than the one before.
+        """
+
 class Exponential:
     """Exponential convergence: rate = -gain error."""
 
@@ -111,7 +137,7 @@ class Task:
 
 def FramePosition(*, frame: str, target: object, reference: Exponential | PredefinedTime = ...) -> Task:
     """
-    Brings the origin of a frame to a point [m], or to where a PointPath or a function t -> (point, velocity) moves it.
+    Brings the origin of a frame to a point [m], or to where a PointPath, a PointStream or a function t -> (point, velocity) moves it.
     """
 
 def FrameOrientation(*, frame: str, target: object, reference: Exponential | PredefinedTime = ...) -> Task:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import threading
+import time
 from pathlib import Path
 
 import kinematics
@@ -110,6 +112,55 @@ def test_paths_pass_their_waypoints(robot: tope.Robot) -> None:
     turn = tope.RotationPath([0, 3], [start.rotation, [1, 0, 0, 0]])
     assert turn.at(3)[0] == pytest.approx(np.eye(3), abs=1e-12)
     assert turn.at(0)[1] == pytest.approx(np.zeros(3))
+
+
+def test_samples_from_another_thread_are_followed(robot: tope.Robot) -> None:
+    dt = 1e-3
+    start = kinematics.frames(named(robot, Q0))["ee"]
+    stream = tope.PointStream(start.translation, hold=10)  # however seldom the other thread comes to run
+    turned = tope.RotationStream(start.rotation)
+    c = tope.Controller(robot, mode="velocity", dt=dt)
+    c.add(tope.FramePosition(frame="ee", target=stream, reference=tope.Exponential(gain=8)), level=1)
+    c.add(tope.FrameOrientation(frame="ee", target=turned), level=2)
+    now, goal, velocity = [0.0], start.translation + np.array([0.05, 0.03, 0.02]), np.array([0.01, 0, 0])
+    heard, done = threading.Event(), threading.Event()
+
+    def camera() -> None:
+        last = -1.0
+        while not done.is_set():
+            t = now[0]
+            if t > last:
+                assert stream.put(t, goal + t * velocity, velocity)
+                assert turned.put(t, start.rotation)
+                last = t
+                heard.set()
+            time.sleep(0)
+
+    writer = threading.Thread(target=camera)
+    writer.start()
+    q, u = Q0.copy(), np.zeros(8)
+    for k in range(4000):
+        now[0] = k * dt
+        if k == 1000:
+            assert heard.wait(10)
+        u = c.update(q, u, k * dt).copy()
+        q += dt * u
+    done.set()
+    writer.join()
+    reached = kinematics.frames(named(robot, q))["ee"].translation
+    assert reached == pytest.approx(goal + 4 * velocity, abs=1e-3)
+
+
+def test_bad_samples_are_told(robot: tope.Robot) -> None:
+    stream = tope.PointStream(POINT)
+    assert stream.put(1.0, POINT)
+    assert not stream.put(1.0, POINT)
+    assert not stream.put(2.0, [np.nan, 0, 0])
+    turned = tope.RotationStream([1, 0, 0, 0])
+    assert not turned.put(1.0, 2 * np.eye(3))
+    assert turned.put(1.0, [0, 1, 0, 0], [0, 0, 0.1])
+    with pytest.raises(tope.ConfigError, match=r"PointStream: hold .* positive"):
+        tope.PointStream(POINT, hold=0)
 
 
 def test_scenario_with_changes_says_what_it_did() -> None:

@@ -4,6 +4,7 @@
 #include "support/no_allocation.hpp"
 #include "support/robots.hpp"
 
+#include <tope/reference/target_stream.hpp>
 #include <tope/task/center_of_mass.hpp>
 #include <tope/task/damping.hpp>
 #include <tope/task/frame_position.hpp>
@@ -250,6 +251,38 @@ BOOST_AUTO_TEST_CASE(manipulability_out_of_reach_climbs_to_the_top) {
     BOOST_TEST(loop.slope() < 0.1 * loop.slope_at_start);
     BOOST_TEST(loop.v.norm() < 2e-2);
     BOOST_TEST(loop.controller.task(loop.hand).error().norm() < 1e-5);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(samples_of_a_circle_are_followed_within_the_stated_lag) {
+  for (const Mode mode : {Mode::velocity, Mode::torque}) {
+    Loop loop(youbot(), {.mode = mode});
+    const Vector3 start = end_effector(loop);
+    const auto circle = moving_along_sine(start, Vector3(0.0, 0.05, 0.02), 0.2);
+    PointStream stream(start);
+    const Exponential reference(8.0);
+    loop.controller.add(1, FramePosition(loop.robot, "ee", stream.target(), reference));
+    loop.controller.add(2, Damping(loop.robot));
+    double farthest = 0.0;
+    double next = 0.0;
+    while (loop.t < 6.0) {
+      const PointTarget now = circle.at(loop.t);
+      if (loop.t >= next) {  // a camera at 30 Hz
+        BOOST_TEST(stream.put({.time = loop.t, .position = now.position, .velocity = now.velocity}));
+        next += 1.0 / 30.0;
+      }
+      {
+        const NoAllocation guard("stream");
+        loop.command();
+      }
+      if (loop.t > 2.0) {
+        farthest = std::max(farthest, (end_effector(loop) - now.position).norm());
+      }
+      loop.follow();
+    }
+    const double acceleration = circle.at(1.25).acceleration.norm();
+    BOOST_TEST(farthest < 3.0 * acceleration / (20.0 * 20.0) + 3e-4);
+    BOOST_TEST(farthest > 1e-5);
   }
 }
 
