@@ -41,6 +41,7 @@ nb::dict describe_task(const Robot& robot, const ScenarioTask& task, const TaskC
   entry["size"] = task.task->size();
   entry["unit"] = std::string(task.task->error_unit());
   entry["goal_time"] = optional_number(course.goal_time);
+  entry["starts"] = course.at_start;
   entry["stays"] = course.at_end;
   entry["gain"] = task.task->gain();
   const auto goal = task.task->frame_goal(0.0);

@@ -222,14 +222,12 @@ const std::vector<std::pair<std::string, TaskReader>>& task_readers() {
 
 std::shared_ptr<const Task> read_by_type(const YamlReader& yaml, const Robot& robot) {
   const std::string type = yaml.text("type");
-  std::vector<std::string> names;
   for (const auto& [name, reader] : task_readers()) {
     if (name == type) {
       return reader(yaml, robot);
     }
-    names.push_back(name);
   }
-  yaml.fail("type", "unknown task '" + type + "'" + name_hint(type, names));
+  yaml.fail("type", "unknown task '" + type + "'" + name_hint(type, task_type_names()));
 }
 
 /// Of any task, `rows` keeps those alone.
@@ -268,6 +266,14 @@ std::string blamed_key(const YamlReader& yaml, const std::string& message) {
 }
 
 }  // namespace
+
+std::vector<std::string> task_type_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, reader] : task_readers()) {
+    names.push_back(name);
+  }
+  return names;
+}
 
 std::shared_ptr<const Task> read_goal(const YamlReader& yaml, const Robot& robot) {
   try {

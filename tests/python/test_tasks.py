@@ -167,6 +167,7 @@ def test_scenario_with_changes_says_what_it_did() -> None:
     run = tope.simulate(ROOT / "scenarios/youbot_task_changes.yaml", overrides={"duration": 5.0})
     tasks = {task["name"]: task for task in run.scenario["tasks"]}
     assert [tasks[name]["stays"] for name in ("orientation", "position", "look")] == [False, True, True]
+    assert [tasks[name]["starts"] for name in ("orientation", "position", "look")] == [True, True, False]
     assert run.log["a.orientation"][0] == 1
     assert run.log["a.orientation"][-1] == 0
     assert run.log["a.look"][[0, -1]] == pytest.approx([0, 1])

@@ -262,6 +262,18 @@ BOOST_AUTO_TEST_CASE(targets_pass_waypoints) {
           {":24: tasks.1.target.velocity: unknown key"});
 }
 
+BOOST_AUTO_TEST_CASE(every_type_and_key_of_tasks_is_documented) {
+  const std::string page = read_text(source_path("docs/tasks.md"));
+  BOOST_TEST(task_type_names().size() >= 10U);
+  for (const std::string& type : task_type_names()) {
+    BOOST_TEST(page.find("| `" + type + "` (") != std::string::npos, type);
+  }
+  for (const char* key : {"rows:", "joints:", "waypoints:", "velocity:", "amplitude:", "frequency:",
+                          "angular_velocity:", "seen_from", "add:", "remove:", "move:", "replace:"}) {
+    BOOST_TEST(page.find(key) != std::string::npos, key);
+  }
+}
+
 std::string with_changes(const std::string& changes) { return good_scenario() + "changes:\n" + changes; }
 
 void check_changes_refused(const std::string& changes, std::initializer_list<std::string> parts) {

@@ -154,6 +154,20 @@ BOOST_AUTO_TEST_CASE(motion_outside_a_group_leaves_its_speed_over_the_gain) {
   BOOST_TEST((loop.controller.task(hold).error() - Vector3(speed / gain, 0.0, 0.0)).norm() < 5e-5);
 }
 
+BOOST_AUTO_TEST_CASE(constant_velocity_outside_a_group_does_not_disturb_its_torques) {
+  Loop loop(youbot(), {.mode = Mode::torque});
+  const Vector3 target = end_effector(loop);
+  const FramePosition drive(loop.robot, "base_link",
+                            moving_along_line(Vector3::Zero(), Vector3(0.02, 0.0, 0.0)), Exponential(4.0));
+  loop.controller.add(1, JointGroup(loop.robot, SelectedRows(drive, {0, 1}), {"base_x", "base_y"}));
+  const TaskHandle hold = loop.controller.add(
+      2, JointGroup(loop.robot, FramePosition(loop.robot, "ee", target, Exponential(4.0)), kArm));
+  loop.controller.add(3, Damping(loop.robot));
+  loop.run(5.0);
+  BOOST_TEST(loop.v[0] > 0.019);
+  BOOST_TEST(loop.controller.task(hold).error().norm() < 2e-4);  // 5 mm in velocity mode
+}
+
 BOOST_AUTO_TEST_CASE(lower_levels_cannot_disturb_a_group_through_its_joints) {
   Loop loop(youbot(), kExact);
   const Vector3 target = end_effector(loop) + Vector3(0.02, 0.03, -0.02);

@@ -24,6 +24,9 @@ struct ScenarioTask {
   double tolerance = 1e-3;  ///< norm of the error below which its goal counts as reached [m or rad]
 };
 
+/// The types of tasks that a scenario can name.
+std::vector<std::string> task_type_names();
+
 /// What happens to a task of a scenario at one moment, and over the seconds after it.
 struct TaskChange {
   enum class Kind { add, remove, move, replace };
