@@ -63,6 +63,7 @@ std::vector<Waypoint> waypoints_from(const std::vector<double>& times, const nb:
                       std::to_string(nb::len(values)));
   }
   std::vector<Waypoint> waypoints;
+  waypoints.reserve(times.size());
   for (std::size_t i = 0; i < times.size(); ++i) {
     waypoints.push_back({times[i], read(values[i])});
   }

@@ -2,8 +2,10 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace tope {
 namespace {
@@ -43,7 +45,7 @@ StreamFollower<D>::StreamFollower(const StreamSample<D>& start, const StreamOpti
     : options_(options), sample_(start) {}
 
 template <int D>
-typename StreamFollower<D>::Piece StreamFollower<D>::piece_at(double t) const {
+StreamFollower<D>::Piece StreamFollower<D>::piece_at(double t) const {
   if (t < end_of(Piece::before)) {
     return Piece::before;
   }
@@ -114,7 +116,7 @@ template <int D>
 void StreamFollower<D>::follow(StreamSample<D> sample) {
   const PathMotion<D> motion = motion_at(now_);
   turn_towards(sample, motion.value);
-  sample_ = sample;
+  sample_ = std::move(sample);
   begin(piece_at(now_), now_, motion);
 }
 

@@ -14,7 +14,7 @@
 namespace tope {
 namespace {
 
-const StreamOptions& checked(const std::string& who, const StreamOptions& options) {
+StreamOptions checked(const std::string& who, const StreamOptions& options) {
   require_positive(who + ": rate [1/s]", options.rate);
   require_positive(who + ": hold [s]", options.hold);
   return options;
@@ -26,7 +26,7 @@ const StreamOptions& checked(const std::string& who, const StreamOptions& option
 template <int D>
 struct SharedStream {
   static constexpr int kNumbers = D + 4;
-  using Numbers = typename SequenceLock<kNumbers>::Numbers;
+  using Numbers = SequenceLock<kNumbers>::Numbers;
 
   SharedStream(const StreamSample<D>& first, const StreamOptions& how) : start(first), options(how) {}
 

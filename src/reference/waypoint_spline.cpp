@@ -35,7 +35,7 @@ Knots knots_for(const std::vector<double>& times) {
 template <int D>
 class Equations {
  public:
-  using Values = typename WaypointSpline<D>::Values;
+  using Values = WaypointSpline<D>::Values;
 
   Equations(const Knots& knots, const Values& waypoints)
       : knots_(knots),
@@ -129,7 +129,7 @@ WaypointSpline<D>::WaypointSpline(const std::vector<double>& times, const Values
 
 template <int D>
 PathMotion<D> WaypointSpline<D>::at(double t) const {
-  using Value = typename PathMotion<D>::Value;
+  using Value = PathMotion<D>::Value;
   const Eigen::Index last = values_.cols() - 1;
   if (t <= knots_.front() || t >= knots_.back()) {
     return {values_.col(t <= knots_.front() ? 0 : last), Value::Zero(), Value::Zero()};

@@ -320,8 +320,8 @@ TaskCourse Scenario::course(std::size_t task) const {
     first = false;
   }
   course.always = course.always && course.at_start;
-  if (course.at_end && now->duration()) {
-    course.goal_time = begun + *now->duration();
+  if (const auto promised = now->duration(); promised && course.at_end) {
+    course.goal_time = begun + *promised;
   }
   return course;
 }

@@ -245,11 +245,11 @@ BOOST_AUTO_TEST_CASE(bad_samples_are_refused_and_change_nothing) {
   BOOST_TEST(!rotations.put({.time = 1.0, .angular_velocity = Vector3(kNan, 0.0, 0.0)}));
   BOOST_TEST((rotation.at(2.0).rotation == Matrix3::Identity()));
   BOOST_TEST(rotations.put({.time = 1.0, .rotation = turn(Vector3::UnitX())}));
-  check_error([] { PointStream(Vector3(kNan, 0.0, 0.0)); }, {"PointStream: start", "finite"});
+  check_error([] { PointStream{Vector3(kNan, 0.0, 0.0)}; }, {"PointStream: start", "finite"});
   check_error([] { PointStream(Vector3::Zero(), {.rate = 0.0}); }, {"PointStream: rate", "positive"});
   check_error([] { RotationStream(Matrix3::Identity(), {.hold = kInfinity}); },
               {"RotationStream: hold", "finite"});
-  check_error([] { RotationStream(Matrix3::Zero()); }, {"RotationStream: start", "not a rotation"});
+  check_error([] { RotationStream{Matrix3::Zero()}; }, {"RotationStream: start", "not a rotation"});
 }
 
 BOOST_AUTO_TEST_CASE(streams_allocate_nothing) {
