@@ -1,12 +1,14 @@
-// Pointing, the centre of mass, relative poses, selected rows and joint groups in closed loops of both modes: they arrive,
-// follow what moves, leave free what they say is free, and never touch the heap. Not here: their derivatives (task_test, task_second_order_test).
+// Pointing, the centre of mass, relative poses, manipulability, selected rows and joint groups, waypoints and streams in closed
+// loops of both modes: they arrive, follow what moves, leave free what they say is free, and never touch the heap. Not here: their derivatives (task_test, task_second_order_test).
 #include "support/loop.hpp"
 #include "support/no_allocation.hpp"
 #include "support/robots.hpp"
 
 #include <tope/reference/target_stream.hpp>
+#include <tope/reference/waypoints.hpp>
 #include <tope/task/center_of_mass.hpp>
 #include <tope/task/damping.hpp>
+#include <tope/task/frame_pose.hpp>
 #include <tope/task/frame_position.hpp>
 #include <tope/task/joint_group.hpp>
 #include <tope/task/joint_position.hpp>
@@ -16,6 +18,7 @@
 #include <tope/task/selected_rows.hpp>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <boost/test/unit_test.hpp>
 
 #include <algorithm>
@@ -130,6 +133,44 @@ BOOST_AUTO_TEST_CASE(relative_pose_follows_its_target) {
   RelativeTarget target = near_start(loop, Vector3(0.0, 0.0, 0.03), Vector3(0.0, 0.0, 0.1));
   target.rotation.reset();
   BOOST_TEST(error_left(loop, RelativePose(loop.robot, "ee", "base_link", target), 4.0) < 1e-4);
+}
+
+BOOST_AUTO_TEST_CASE(relative_rotation_follows_its_target_in_both_modes) {
+  for (const Mode mode : {Mode::velocity, Mode::torque}) {
+    Loop loop(youbot(), {.mode = mode});
+    RelativeTarget target = near_start(loop, Vector3::Zero(), Vector3(0.02, 0.03, 0.1));
+    target.position.reset();
+    loop.controller.add(2, Damping(loop.robot));
+    BOOST_TEST(error_left(loop, RelativePose(loop.robot, "ee", "base_link", target, Exponential(4.0)), 4.0) <
+               1e-4);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(waypoints_are_passed_in_both_modes) {
+  for (const Mode mode : {Mode::velocity, Mode::torque}) {
+    Loop loop(youbot(), {.mode = mode, .limits = kExact.limits});
+    RobotTerms terms(loop.robot);
+    terms.update(loop.q, loop.v);
+    const Matrix3 rotation = terms.frame_rotation(loop.robot.frame_index("ee"));
+    const Vector3 start = end_effector(loop);
+    const Vector3 middle = start + Vector3(0.1, 0.05, -0.03);
+    const std::vector<PointWaypoint> points{
+        {0.5, start}, {1.5, middle}, {3.0, start + Vector3(0.0, 0.1, 0.05)}};
+    const std::vector<RotationWaypoint> rotations{
+        {0.5, rotation}, {3.0, Eigen::AngleAxisd(0.5, Vector3::UnitZ()).toRotationMatrix() * rotation}};
+    const TaskHandle pose = loop.controller.add(
+        1, FramePose(loop.robot, "ee", through(points), through(rotations), Exponential(6.0)));
+    loop.controller.add(2, Damping(loop.robot));
+    double farthest = 0.0;
+    double missed = INFINITY;
+    loop.run(3.5, [&] {
+      farthest = std::max(farthest, loop.controller.task(pose).error().norm());
+      missed = std::min(missed, (end_effector(loop) - middle).norm() + std::abs(loop.t - 1.5));
+    });
+    BOOST_TEST(farthest < 1e-3);  // starts on its way, and never leaves it
+    BOOST_TEST(missed < 2e-3);    // a millimetre, and a cycle
+    BOOST_TEST(loop.controller.task(pose).error().norm() < 1e-5);
+  }
 }
 
 BOOST_AUTO_TEST_CASE(joints_outside_a_group_do_not_move_for_it) {
