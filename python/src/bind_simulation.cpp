@@ -33,14 +33,16 @@ nb::dict describe_joint(const Robot& robot, const JointLimits& limits, const Vec
   return entry;
 }
 
-nb::dict describe_task(const Robot& robot, const ScenarioTask& task) {
+nb::dict describe_task(const Robot& robot, const ScenarioTask& task, const TaskCourse& course) {
   nb::dict entry;
   entry["name"] = task.name;
   entry["type"] = std::string(task.task->type());
   entry["level"] = task.level;
   entry["size"] = task.task->size();
   entry["unit"] = std::string(task.task->error_unit());
-  entry["goal_time"] = optional_number(task.task->duration());
+  entry["goal_time"] = optional_number(course.goal_time);
+  entry["starts"] = course.at_start;
+  entry["stays"] = course.at_end;
   entry["gain"] = task.task->gain();
   const auto goal = task.task->frame_goal(0.0);
   entry["frame"] = goal ? nb::cast(robot.frame_name(goal->frame)) : nb::none();
@@ -64,8 +66,8 @@ nb::dict describe_scenario(const Scenario& scenario) {
     joints.append(describe_joint(*scenario.robot, limits, scenario.command_bound(), j));
   }
   nb::list tasks;
-  for (const ScenarioTask& task : scenario.tasks) {
-    tasks.append(describe_task(*scenario.robot, task));
+  for (std::size_t i = 0; i < scenario.tasks.size(); ++i) {
+    tasks.append(describe_task(*scenario.robot, scenario.tasks[i], scenario.course(i)));
   }
   nb::dict entry;
   entry["name"] = scenario.name;
@@ -106,7 +108,7 @@ nb::dict describe_summary(const Scenario& scenario, const Summary& summary) {
     nb::dict error;
     error["final"] = result.final_error;
     error["at_goal_time"] = optional_number(result.at_goal_time);
-    error["measured"] = result.measured_error;
+    error["measured"] = finite_or_none(result.measured_error);
     error["acceleration"] = result.acceleration;
     errors[name.c_str()] = error;
   }

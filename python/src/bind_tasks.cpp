@@ -1,21 +1,20 @@
 #include "bindings.hpp"
+#include "targets.hpp"
 #include "task_spec.hpp"
 
-#include <tope/common/error.hpp>
 #include <tope/task/center_of_mass.hpp>
 #include <tope/task/damping.hpp>
 #include <tope/task/frame_orientation.hpp>
 #include <tope/task/frame_pose.hpp>
 #include <tope/task/frame_position.hpp>
+#include <tope/task/joint_group.hpp>
 #include <tope/task/joint_position.hpp>
+#include <tope/task/manipulability.hpp>
 #include <tope/task/pointing.hpp>
 #include <tope/task/posture.hpp>
-#include <tope/task/rotation_error.hpp>
+#include <tope/task/relative_pose.hpp>
 #include <tope/task/selected_rows.hpp>
 
-#include <Eigen/Geometry>
-
-#include <cmath>
 #include <utility>
 
 namespace nb = nanobind;
@@ -23,81 +22,6 @@ using namespace nb::literals;
 
 namespace tope::python {
 namespace {
-
-/// Anything that numpy makes an array of numbers from, a list for example.
-nb::object numbers_from(const nb::handle& values) {
-  return nb::module_::import_("numpy").attr("asarray")(values, "dtype"_a = "float64");
-}
-
-template <typename T>
-T numbers_from(const nb::handle& values, const char* what, const char* expected) {
-  T result;
-  if (!nb::try_cast<T>(numbers_from(values), result)) {
-    throw ConfigError(std::string(what) + ": expected " + expected);
-  }
-  return result;
-}
-
-/// A 3 x 3 matrix, or a quaternion w, x, y, z.
-Matrix3 rotation_from(const nb::handle& target) {
-  const nb::object numbers = numbers_from(target);
-  Matrix3 matrix;
-  if (nb::try_cast<Matrix3>(numbers, matrix)) {
-    return matrix;
-  }
-  const auto wxyz = numbers_from<Eigen::Vector4d>(numbers, "target",
-                                                  "a 3 x 3 rotation matrix or a quaternion (w, x, y, z)");
-  if (std::abs(wxyz.norm() - 1.0) > 1e-2) {
-    throw ConfigError("target: not a rotation: the norm of the quaternion is " + std::to_string(wxyz.norm()));
-  }
-  return Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized().toRotationMatrix();
-}
-
-Vector3 point_at(const nb::handle& target) {
-  return numbers_from<Vector3>(target, "target", "a point of three numbers [m]");
-}
-
-/// A target that a Python function moves. What it raises inside the control loop must not cross it: the target stands
-/// still, and Controller.update raises the error when the cycle is complete.
-template <typename Sample>
-Target<Sample> moving_target(std::function<Sample(double)> motion) {
-  const Sample first = motion(0.0);  // raises here what is wrong from the start
-  return Target<Sample>(std::function<Sample(double)>([motion, last = first](double t) mutable {
-    if (PyErr_Occurred() != nullptr) {
-      return last;
-    }
-    try {
-      last = motion(t);
-    } catch (nb::python_error& error) {
-      error.restore();
-    } catch (const std::exception& error) {
-      PyErr_SetString(PyExc_RuntimeError, error.what());
-    }
-    return last;
-  }));
-}
-
-/// A point, or a function of time that returns a point and its velocity.
-Target<PointTarget> point_from(const nb::object& target) {
-  if (PyCallable_Check(target.ptr()) == 0) {
-    return PointTarget{.position = point_at(target)};
-  }
-  return moving_target<PointTarget>([target](double t) {
-    const nb::tuple sample = nb::cast<nb::tuple>(target(t));
-    return PointTarget{.position = point_at(sample[0]), .velocity = point_at(sample[1])};
-  });
-}
-
-/// A rotation, or a function of time that returns a rotation and its angular velocity.
-Target<RotationTarget> rotating_from(const nb::object& target) {
-  if (PyCallable_Check(target.ptr()) == 0) {
-    return RotationTarget{.rotation = rotation_from(target)};
-  }
-  return moving_target<RotationTarget>([target](double t) {
-    const nb::tuple sample = nb::cast<nb::tuple>(target(t));
-    return RotationTarget{.rotation = rotation_from(sample[0]), .angular_velocity = point_at(sample[1])};
-  });
-}
 
 void bind_references(nb::module_& module) {
   nb::class_<Exponential>(module, "Exponential", "Exponential convergence: rate = -gain error.")
@@ -132,7 +56,10 @@ void bind_tasks(nb::module_& module) {
                         }};
       },
       nb::kw_only(), "frame"_a, "target"_a, "reference"_a = Exponential{},
-      "Brings the origin of a frame to a point [m], or to where a function t -> (point, velocity) moves it.");
+      "Brings the origin of a frame to a point [m], or to where a PointPath, a PointStream or a function t "
+      "-> (point, "
+      "velocity) "
+      "moves it.");
   module.def(
       "FrameOrientation",
       [](const std::string& frame, const nb::object& target, const Reference& reference) {
@@ -177,6 +104,48 @@ void bind_tasks(nb::module_& module) {
       nb::kw_only(), "target"_a, "reference"_a = Exponential{},
       "Brings the robot's centre of mass to a point [m], or to where a function t -> (point, velocity) moves "
       "it.");
+  module.def(
+      "RelativePose",
+      [](const std::string& frame, const std::string& seen_from, const nb::object& position,
+         const nb::object& rotation, const Reference& reference) {
+        RelativeTarget target;
+        if (!position.is_none()) {
+          target.position = point_from(position);
+        }
+        if (!rotation.is_none()) {
+          target.rotation = rotating_from(rotation);
+        }
+        return TaskSpec{"relative_pose", [=](const Robot& robot) {
+                          return std::make_unique<RelativePose>(robot, frame, seen_from, target, reference);
+                        }};
+      },
+      nb::kw_only(), "frame"_a, "seen_from"_a, "position"_a = nb::none(), "rotation"_a = nb::none(),
+      "reference"_a = Exponential{},
+      "Position, rotation or both of a frame as another frame of the robot sees it, along that one's axes.");
+  module.def(
+      "Manipulability",
+      [](const std::string& frame, double target, const std::vector<int>& rows,
+         const std::vector<std::string>& joints, const Reference& reference) {
+        return TaskSpec{"manipulability", [=](const Robot& robot) {
+                          return std::make_unique<Manipulability>(
+                              robot, frame, target, ManipulabilityOptions{.rows = rows, .joints = joints},
+                              reference);
+                        }};
+      },
+      nb::kw_only(), "frame"_a, "target"_a, "rows"_a = ManipulabilityOptions{}.rows,
+      "joints"_a = std::vector<std::string>{}, "reference"_a = Exponential{},
+      "Brings the manipulability sqrt(det(J J^T)) of a frame to a target; of some rows of its Jacobian (0 to "
+      "2: "
+      "position, 3 to 5: rotation) and of some joints' columns, if named.");
+  module.def(
+      "JointGroup",
+      [](const TaskSpec& task, const std::vector<std::string>& joints) {
+        return TaskSpec{task.type, [=](const Robot& robot) {
+                          return std::make_unique<JointGroup>(robot, *task.make(robot), joints);
+                        }};
+      },
+      "task"_a, nb::kw_only(), "joints"_a,
+      "A task served by some joints alone. What the others do disturbs it; feedback alone answers that.");
   module.def(
       "SelectedRows",
       [](const TaskSpec& task, const std::vector<int>& rows) {

@@ -63,6 +63,60 @@ class Robot:
 
     def __repr__(self) -> str: ...
 
+class PointPath:
+    """
+    A target that passes points at given times, smoothly in velocity and acceleration.
+    """
+
+    def __init__(self, times: Sequence[float], points: Sequence) -> None:
+        """
+        Times [s] that rise, and a point [m] for each; at rest before and after.
+        """
+
+    def at(self, t: float) -> tuple:
+        """Position [m], velocity [m/s] and acceleration [m/s2] at a time [s]."""
+
+class RotationPath:
+    """
+    A target that passes rotations at given times, smoothly in velocity and acceleration.
+    """
+
+    def __init__(self, times: Sequence[float], rotations: Sequence) -> None:
+        """
+        Times [s] that rise, and a rotation for each, a matrix or a quaternion (w, x, y, z); at rest before and after.
+        """
+
+    def at(self, t: float) -> tuple:
+        """
+        Rotation, angular velocity [rad/s] and acceleration [rad/s2] at a time [s], along fixed axes.
+        """
+
+class PointStream:
+    """
+    A target that comes in samples from outside the control loop, from another thread for example. It goes on with a sample's velocity for up to `hold` seconds, then stops; a filter with a triple pole at -`rate` [1/s] makes it smooth.
+    """
+
+    def __init__(self, start: object, *, rate: float = 20.0, hold: float = 0.1) -> None:
+        """Rests at `start` [m] until the first sample."""
+
+    def put(self, time: float, position: object, velocity: object = (0.0, 0.0, 0.0)) -> bool:
+        """
+        A sample of that time [s, on the clock of Controller.update], position [m] and velocity [m/s]. False, and nothing changes, for what is not finite or no later than the one before.
+        """
+
+class RotationStream:
+    """
+    The same as PointStream for a rotation, a matrix or a quaternion (w, x, y, z).
+    """
+
+    def __init__(self, start: object, *, rate: float = 20.0, hold: float = 0.1) -> None:
+        """Rests at `start` until the first sample."""
+
+    def put(self, time: float, rotation: object, angular_velocity: object = (0.0, 0.0, 0.0)) -> bool:
+        """
+        A sample of that time [s, on the clock of Controller.update], rotation and angular velocity along the world's axes [rad/s]. False, and nothing changes, for what is not finite, no rotation, or no later than the one before.
+        """
+
 class Exponential:
     """Exponential convergence: rate = -gain error."""
 
@@ -83,7 +137,7 @@ class Task:
 
 def FramePosition(*, frame: str, target: object, reference: Exponential | PredefinedTime = ...) -> Task:
     """
-    Brings the origin of a frame to a point [m], or to where a function t -> (point, velocity) moves it.
+    Brings the origin of a frame to a point [m], or to where a PointPath, a PointStream or a function t -> (point, velocity) moves it.
     """
 
 def FrameOrientation(*, frame: str, target: object, reference: Exponential | PredefinedTime = ...) -> Task:
@@ -102,6 +156,21 @@ def Pointing(*, frame: str, axis: object, target: object, reference: Exponential
 def CenterOfMass(*, target: object, reference: Exponential | PredefinedTime = ...) -> Task:
     """
     Brings the robot's centre of mass to a point [m], or to where a function t -> (point, velocity) moves it.
+    """
+
+def RelativePose(*, frame: str, seen_from: str, position: object | None = None, rotation: object | None = None, reference: Exponential | PredefinedTime = ...) -> Task:
+    """
+    Position, rotation or both of a frame as another frame of the robot sees it, along that one's axes.
+    """
+
+def Manipulability(*, frame: str, target: float, rows: Sequence[int] = [0, 1, 2, 3, 4, 5], joints: Sequence[str] = [], reference: Exponential | PredefinedTime = ...) -> Task:
+    """
+    Brings the manipulability sqrt(det(J J^T)) of a frame to a target; of some rows of its Jacobian (0 to 2: position, 3 to 5: rotation) and of some joints' columns, if named.
+    """
+
+def JointGroup(task: Task, *, joints: Sequence[str]) -> Task:
+    """
+    A task served by some joints alone. What the others do disturbs it; feedback alone answers that.
     """
 
 def SelectedRows(task: Task, *, rows: Sequence[int]) -> Task:

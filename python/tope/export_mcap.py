@@ -136,7 +136,7 @@ def poses(tree: RobotTree, goal: Goal, stamps: Sequence[Mapping[str, int]]) -> I
 
 def diagnostics(run: Run, stamps: Sequence[Mapping[str, int]]) -> Iterator[Message]:
     """A DiagnosticArray for each row: the controller's status, and how far limits act."""
-    columns = [name for name in run.log if name == "scale" or name.startswith(("xi.", "e.", "wheel."))]
+    columns = [name for name in run.log if name == "scale" or name.startswith(("xi.", "e.", "a.", "wheel."))]
     values = np.stack([run.log[name] for name in columns], axis=1).tolist()
     for time, row, status in zip(stamps, values, run.log["status"].tolist(), strict=True):
         entry = {

@@ -79,7 +79,7 @@ class LiveControls:
 
     def add_task(self, number: int, task: Mapping[str, Any]) -> None:
         """A task's presence and its gain."""
-        present = self.gui.add_checkbox(f"{task['level']}. {task['name']}", initial_value=True)
+        present = self.gui.add_checkbox(f"{task['level']}. {task['name']}", initial_value=task["starts"])
         present.on_update(lambda _: self.session.show_task(task["name"], present.value))
         if task["type"] == "damping":
             return

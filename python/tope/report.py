@@ -247,9 +247,17 @@ def activations(view: View) -> Section:
 
 
 def task_errors(view: View) -> Section:
-    """The norm and the components of each task's error."""
+    """The norm and the components of each task's error; of one that changes, how far it is there."""
     tasks = words.by_level(view.described("tasks"))
-    panels = [panel for task in tasks for panel in (norm_panel(view, task), *component_panels(view, task))]
+    panels = [
+        panel
+        for task in tasks
+        for panel in (
+            norm_panel(view, task),
+            *component_panels(view, task),
+            *presence_panels(view, task),
+        )
+    ]
     return Section("Task errors", "A vertical line marks the time at which a task is due.", panels)
 
 
@@ -269,6 +277,14 @@ def component_panels(view: View, task: Mapping[str, Any]) -> list[Panel]:
     columns = [(str(i), f"e.{task['name']}.{i}") for i in range(task["size"])]
     title = f"{task['name']}: components" if not view.compares else f"{task['name']}: component"
     return together(view, title, words.unit(task), columns, marks=due(task))
+
+
+def presence_panels(view: View, task: Mapping[str, Any]) -> list[Panel]:
+    """How far a task is there that enters, leaves, moves or is replaced."""
+    column = f"a.{task['name']}"
+    if column not in view.columns("a."):
+        return []
+    return [Panel(f"{task['name']}: activation", "", curves(view, [("activation", column)]))]
 
 
 def norm(run: Run, task: str) -> Array:

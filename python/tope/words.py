@@ -113,11 +113,11 @@ def limits_at_a_glance(summary: Summary) -> tuple[str, str]:
 
 
 def goal_accuracy(summary: Summary) -> str:
-    """The final errors of all tasks."""
+    """The final errors of all tasks that are there at the end."""
     return ", ".join(
         f"{task['name']} {number(summary['task_error'][task['name']]['final'], unit(task))}"
         for task in by_level(summary["scenario"]["tasks"])
-        if task["name"] in summary["task_error"]
+        if task["name"] in summary["task_error"] and task.get("stays", True)
     )
 
 
@@ -151,6 +151,8 @@ def task_error(summary: Summary, task: Mapping[str, Any]) -> str:
     """A task's error at the end, and at its goal time if it has one."""
     error = summary["task_error"][task["name"]]
     text = f"{number(error['final'], unit(task))} at the end"
+    if not task.get("stays", True):
+        text += " (the task had left)"
     if error["at_goal_time"] is not None and task["goal_time"] is not None:
         at_goal_time = number(error["at_goal_time"], unit(task))
         text += f", {at_goal_time} at its goal time, {number(task['goal_time'], 's')}"

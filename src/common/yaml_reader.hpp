@@ -82,4 +82,14 @@ class YamlReader {
   std::shared_ptr<std::vector<std::string>> known_;
 };
 
+/// Runs `build` and gives an error that names no file the place of `key`.
+template <typename Build>
+auto located(const YamlReader& yaml, const std::string& key, Build build) {
+  try {
+    return build();
+  } catch (const ConfigError& error) {
+    yaml.fail(key, error.what());
+  }
+}
+
 }  // namespace tope

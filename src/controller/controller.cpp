@@ -325,7 +325,7 @@ const Status& Controller::update(const VectorArg& q, const VectorArg& v, double 
     leave_bias_to_tasks();
   }
   law_.solve(stack_, solution_);
-  report(torque_mode() ? bound_torque() : bound_velocity());
+  report(torque_mode() ? bound_torque(q) : bound_velocity());
   if (!command_.allFinite()) {  // a target that moves said what is no number
     status_.add(Event::bad_input);
     stand_still(u);
@@ -493,7 +493,7 @@ CommandBounds Controller::bound_velocity() {
   return bounds;
 }
 
-CommandBounds Controller::bound_torque() {
+CommandBounds Controller::bound_torque(const VectorArg& q) {
   if (options_.null_space == NullSpace::zero_torque) {
     solution_.y -= bias_y_;
     solution_.y_limits -= bias_y_;
@@ -510,7 +510,7 @@ CommandBounds Controller::bound_torque() {
                                         torque_bounds_.acceleration_upper());
   }
   const auto& base = robot_.base();
-  const double yaw = base ? terms_.position()[base->options().joints[2]] : 0.0;
+  const double yaw = base ? q[base->options().joints[2]] : 0.0;
   return torque_bounds_.apply(limit_motion_, limit_command_, yaw, motion_, command_);
 }
 

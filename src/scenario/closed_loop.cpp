@@ -29,9 +29,14 @@ ClosedLoop::ClosedLoop(Scenario scenario)
       controller_(std::make_unique<Controller>(*scenario_.robot, scenario_.controller)),
       plant_(make_plant(scenario_)),
       command_(Vector::Zero(scenario_.robot->nv())) {
-  for (const ScenarioTask& task : scenario_.tasks) {
-    handles_.emplace_back(controller_->add(task.level, *task.task));
+  handles_.resize(scenario_.tasks.size());
+  leaving_.resize(scenario_.tasks.size());
+  for (std::size_t i = 0; i < handles_.size(); ++i) {
+    if (scenario_.course(i).at_start) {
+      insert(i, 0.0);
+    }
   }
+  make_due_changes();
   plant_->reset(scenario_.initial);
 }
 
@@ -58,9 +63,59 @@ void ClosedLoop::move_limits() {
 void ClosedLoop::move() {
   plant_->step(command_, scenario_.controller.dt);
   ++cycle_;
+  make_due_changes();
+}
+
+void ClosedLoop::make_due_changes() {
+  const double due = time() + 0.5 * scenario_.controller.dt;  // times are given in a few digits
+  for (; next_change_ < scenario_.changes.size() && scenario_.changes[next_change_].at <= due;
+       ++next_change_) {
+    make(scenario_.changes[next_change_]);
+  }
+}
+
+void ClosedLoop::make(const TaskChange& change) {
+  ScenarioTask& task = scenario_.tasks[change.task];
+  const std::optional<TaskHandle>& handle = handles_[change.task];
+  forget_gone();
+  switch (change.kind) {
+    case TaskChange::Kind::add:
+      insert(change.task, change.over);
+      break;
+    case TaskChange::Kind::remove:
+      remove(change.task, change.over);
+      break;
+    case TaskChange::Kind::move:
+      task.level = change.level;
+      if (handle) {
+        controller_->move(*handle, task.level, {.over = change.over});
+      }
+      break;
+    case TaskChange::Kind::replace:
+      task.task = change.with;
+      if (handle) {
+        controller_->replace(*handle, *task.task, {.over = change.over});
+      }
+      break;
+  }
+}
+
+/// The controller forgets tasks that are gone when others come.
+void ClosedLoop::forget_gone() {
+  for (std::optional<TaskHandle>& handle : leaving_) {
+    if (handle && controller_->activation(*handle) == 0.0) {
+      handle.reset();
+    }
+  }
 }
 
 void ClosedLoop::adopt(Scenario scenario) {
+  for (std::size_t i = 0; i < next_change_; ++i) {
+    const TaskChange& made = scenario.changes[i];
+    ScenarioTask& task = scenario.tasks[made.task];
+    task.level = made.kind == TaskChange::Kind::move ? made.level : task.level;
+    task.task = made.kind == TaskChange::Kind::replace ? made.with : task.task;
+  }
   auto controller = std::make_unique<Controller>(*scenario.robot, scenario.controller);
   std::vector<std::optional<TaskHandle>> handles(handles_.size());
   for (std::size_t i = 0; i < handles.size(); ++i) {
@@ -69,6 +124,7 @@ void ClosedLoop::adopt(Scenario scenario) {
     }
   }
   handles_ = std::move(handles);
+  leaving_.assign(handles_.size(), std::nullopt);
   scenario_ = std::move(scenario);
   controller_ = std::move(controller);
   control();  // so that tasks, activations and status are those of the new controller
@@ -76,6 +132,7 @@ void ClosedLoop::adopt(Scenario scenario) {
 
 void ClosedLoop::insert(std::size_t task, double over) {
   if (!handles_[task]) {
+    forget_gone();
     const ScenarioTask& added = scenario_.tasks[task];
     handles_[task] = controller_->add(added.level, *added.task, {.over = over});
   }
@@ -85,8 +142,14 @@ void ClosedLoop::remove(std::size_t task, double over) {
   std::optional<TaskHandle>& handle = handles_[task];
   if (handle) {
     controller_->remove(*handle, {.over = over});
+    leaving_[task] = handle;
     handle.reset();
   }
+}
+
+double ClosedLoop::activation(std::size_t task) const {
+  const std::optional<TaskHandle>& handle = handles_[task] ? handles_[task] : leaving_[task];
+  return handle ? controller_->activation(*handle) : 0.0;
 }
 
 const Task* ClosedLoop::task(std::size_t task) const {

@@ -13,15 +13,16 @@ namespace {
 
 using Goals = std::map<std::string, std::shared_ptr<LiveGoal>>;
 
-/// One goal for each frame that tasks are about; what no task asks for is as the robot stands at first.
+/// One goal for each frame that tasks are about, those that changes bring included where no other is about the frame; what
+/// no task asks for is as the robot stands at first.
 Goals goals_of(const Scenario& scenario) {
   RobotTerms terms(*scenario.robot);
   terms.update(scenario.initial, Vector::Zero(scenario.robot->nv()));
   Goals goals;
-  for (const ScenarioTask& task : scenario.tasks) {
-    const auto goal = task.task->frame_goal(0.0);
+  const auto add = [&](const Task& task) {
+    const auto goal = task.frame_goal(0.0);
     if (!goal) {
-      continue;
+      return;
     }
     auto& live = goals[scenario.robot->frame_name(goal->frame)];
     if (!live) {
@@ -29,6 +30,14 @@ Goals goals_of(const Scenario& scenario) {
     }
     *live = LiveGoal(goal->position.value_or(live->put_position()),
                      goal->rotation.value_or(live->put_rotation()));
+  };
+  for (const TaskChange& change : scenario.changes) {
+    if (change.with) {
+      add(*change.with);
+    }
+  }
+  for (const ScenarioTask& task : scenario.tasks) {
+    add(*task.task);
   }
   return goals;
 }
@@ -54,6 +63,7 @@ void require_same(const Scenario& now, const Scenario& next) {
   require(now.controller.dt == next.controller.dt, "dt");
   require(now.plant == next.plant, "plant.type");
   require(task_names(now) == task_names(next), "tasks");
+  require(now.changes.size() == next.changes.size(), "changes");
 }
 
 }  // namespace
@@ -64,18 +74,24 @@ LiveSimulation::LiveSimulation(const Scenario& scenario)
 }
 
 Scenario LiveSimulation::with_live_goals(Scenario scenario) const {
-  for (ScenarioTask& task : scenario.tasks) {
-    const auto aim = task.task->frame_goal(0.0);
+  const auto follow = [&](std::shared_ptr<const Task>& task) {
+    const auto aim = task ? task->frame_goal(0.0) : std::nullopt;
     if (!aim) {
-      continue;
+      return;
     }
     const auto found = goals_.find(scenario.robot->frame_name(aim->frame));
     if (found == goals_.end()) {
       throw ConfigError("frames of tasks cannot change while the simulation runs: start it anew");
     }
     const std::shared_ptr<LiveGoal> goal = found->second;
-    task.task = task.task->aimed_at(Target<PointTarget>([goal](double) { return goal->point(); }),
-                                    Target<RotationTarget>([goal](double) { return goal->rotation(); }));
+    task = task->aimed_at(Target<PointTarget>([goal](double) { return goal->point(); }),
+                          Target<RotationTarget>([goal](double) { return goal->rotation(); }));
+  };
+  for (ScenarioTask& task : scenario.tasks) {
+    follow(task.task);
+  }
+  for (TaskChange& change : scenario.changes) {
+    follow(change.with);
   }
   return scenario;
 }

@@ -1,4 +1,5 @@
 #include "../common/yaml_reader.hpp"
+#include "change_reader.hpp"
 #include "mujoco_reader.hpp"
 #include "task_reader.hpp"
 
@@ -13,16 +14,6 @@
 
 namespace tope {
 namespace {
-
-/// Runs `build` and gives an error that names no file the place of `key`.
-template <typename Build>
-auto located(const YamlReader& yaml, const std::string& key, Build build) {
-  try {
-    return build();
-  } catch (const ConfigError& error) {
-    yaml.fail(key, error.what());
-  }
-}
 
 Robot read_robot(const YamlReader& yaml, Scenario& scenario) {
   const bool packaged = yaml.text("urdf").starts_with("package://");
@@ -227,9 +218,10 @@ void read_torque_options(const YamlReader& yaml, ControllerOptions& options) {
 /// In torque mode some task must take the freedom that is left, or it drifts.
 void add_lowest_level(const Robot& robot, Scenario& scenario) {
   int lowest = 0;
-  for (const ScenarioTask& task : scenario.tasks) {
-    lowest = std::max(lowest, task.level);
-    if (task.task->size() >= robot.nv()) {
+  for (std::size_t i = 0; i < scenario.tasks.size(); ++i) {
+    const TaskCourse course = scenario.course(i);
+    lowest = std::max(lowest, course.lowest_level);
+    if (scenario.tasks[i].task->size() >= robot.nv() && course.always) {
       return;
     }
   }
@@ -301,10 +293,49 @@ const Vector& Scenario::command_bound() const {
   return controller.mode == Mode::torque ? robot->effort_limit() : robot->velocity_limit();
 }
 
+TaskCourse Scenario::course(std::size_t task) const {
+  const Task* now = tasks[task].task.get();
+  double begun = 0.0;
+  TaskCourse course;
+  course.lowest_level = tasks[task].level;
+  bool first = true;
+  for (const TaskChange& change : changes) {
+    if (change.task != task) {
+      continue;
+    }
+    switch (change.kind) {
+      case TaskChange::Kind::add:
+        course.at_start = course.at_start && !first;
+        course.at_end = true;
+        begun = change.at;
+        break;
+      case TaskChange::Kind::remove:
+        course.at_end = false;
+        course.always = false;
+        break;
+      case TaskChange::Kind::move:
+        course.lowest_level = std::max(course.lowest_level, change.level);
+        break;
+      case TaskChange::Kind::replace:
+        now = change.with.get();
+        begun = change.at;
+        break;
+    }
+    first = false;
+  }
+  course.always = course.always && course.at_start;
+  if (const auto promised = now->duration(); promised && course.at_end) {
+    course.goal_time = begun + *promised;
+  }
+  return course;
+}
+
 Controller Scenario::build_controller() const {
   Controller built(*robot, controller);
-  for (const ScenarioTask& task : tasks) {
-    built.add(task.level, *task.task);
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    if (course(i).at_start) {
+      built.add(tasks[i].level, *tasks[i].task);
+    }
   }
   return built;
 }
@@ -347,6 +378,7 @@ Scenario Scenario::load(const std::filesystem::path& file,
   }
   scenario.initial = read_initial(yaml, robot);
   scenario.tasks = read_tasks(yaml, robot);
+  scenario.changes = read_changes(yaml, robot, scenario.tasks);
   yaml.finish();
   add_notices(robot, scenario);
   scenario.robot = std::make_shared<const Robot>(std::move(robot));

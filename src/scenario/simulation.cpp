@@ -1,7 +1,9 @@
 #include <tope/scenario/simulation.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 namespace tope {
 namespace {
@@ -9,6 +11,11 @@ namespace {
 constexpr int kProgressSteps = 200;
 
 bool has_sensors(const Scenario& scenario) { return scenario.plant == "mujoco"; }
+
+bool changes(const Scenario& scenario, std::size_t task) {
+  return std::any_of(scenario.changes.begin(), scenario.changes.end(),
+                     [task](const TaskChange& change) { return change.task == task; });
+}
 
 std::vector<std::string> log_columns(const Scenario& scenario) {
   std::vector<std::string> columns{"t"};
@@ -28,6 +35,11 @@ std::vector<std::string> log_columns(const Scenario& scenario) {
       columns.push_back("e." + task.name + "." + std::to_string(i));
     }
   }
+  for (std::size_t i = 0; i < scenario.tasks.size(); ++i) {
+    if (changes(scenario, i)) {
+      columns.push_back("a." + scenario.tasks[i].name);
+    }
+  }
   columns.emplace_back("scale");
   if (scenario.robot->base()) {
     for (int i = 0; i < 4; ++i) {
@@ -45,10 +57,12 @@ std::vector<std::string> log_columns(const Scenario& scenario) {
 std::vector<Metrics::TaskInfo> task_infos(const Scenario& scenario) {
   std::vector<Metrics::TaskInfo> infos;
   infos.reserve(scenario.tasks.size());
-  for (const ScenarioTask& task : scenario.tasks) {
+  for (std::size_t i = 0; i < scenario.tasks.size(); ++i) {
+    const ScenarioTask& task = scenario.tasks[i];
+    const TaskCourse course = scenario.course(i);
     infos.push_back({.name = task.name,
-                     .goal = task.task->is_goal(),
-                     .goal_time = task.task->duration(),
+                     .goal = task.task->is_goal() && course.at_end,
+                     .goal_time = course.goal_time,
                      .tolerance = task.tolerance});
   }
   return infos;
@@ -73,9 +87,8 @@ Simulation::Simulation(const Scenario& scenario, const SimulationOptions& option
       loop_(scenario),
       log_(log_columns(scenario), options.log_file, options.keep_log),
       true_terms_(*scenario.robot) {
-  for (const ScenarioTask& task : scenario.tasks) {
-    true_tasks_.push_back(task.task->clone());
-  }
+  true_tasks_.resize(scenario.tasks.size());
+  true_of_.resize(scenario.tasks.size());
   row_.reserve(log_.columns().size());
   errors_.resize(scenario.tasks.size());
   norms_.resize(scenario.tasks.size());
@@ -120,6 +133,10 @@ Summary Simulation::run() {
 void Simulation::evaluate_errors() {
   true_terms_.update(loop_.position(), loop_.velocity());
   for (std::size_t i = 0; i < true_tasks_.size(); ++i) {
+    if (const auto& task = loop_.scenario().tasks[i].task; task != true_of_[i]) {  // a change replaced it
+      true_tasks_[i] = task->clone();
+      true_of_[i] = task;
+    }
     true_tasks_[i]->update(true_terms_, loop_.time());
     errors_[i] = true_tasks_[i]->error();
     norms_[i] = errors_[i].norm();
@@ -131,7 +148,8 @@ Summary Simulation::complete(Summary summary, const Smoothness& smoothness) cons
   const Plant& plant = loop_.plant();
   for (std::size_t i = 0; i < errors_.size(); ++i) {
     TaskResult& result = summary.tasks[loop_.scenario().tasks[i].name];
-    result.measured_error = loop_.task(i)->error().norm();
+    const Task* task = loop_.task(i);
+    result.measured_error = task != nullptr ? task->error().norm() : std::numeric_limits<double>::quiet_NaN();
     result.acceleration = smoothness.acceleration(static_cast<int>(i));
   }
   summary.velocity_variation = smoothness.velocity_variation();
@@ -151,6 +169,11 @@ void Simulation::write_row() {
   append(controller.lower_activation());
   for (const Vector& error : errors_) {
     append(error);
+  }
+  for (std::size_t i = 0; i < errors_.size(); ++i) {
+    if (changes(loop_.scenario(), i)) {
+      row_.push_back(loop_.activation(i));
+    }
   }
   row_.push_back(controller.status().scale);
   if (const auto wheels = loop_.wheels()) {

@@ -1,5 +1,5 @@
+#include "../reference/target_checks.hpp"
 #include "orientation_rows.hpp"
-#include "target_checks.hpp"
 
 #include <tope/task/frame_pose.hpp>
 

@@ -1,4 +1,4 @@
-#include "target_checks.hpp"
+#include "../reference/target_checks.hpp"
 
 #include <tope/task/frame_position.hpp>
 

@@ -1,5 +1,5 @@
+#include "../reference/target_checks.hpp"
 #include "near_flip.hpp"
-#include "target_checks.hpp"
 
 #include <tope/common/error.hpp>
 #include <tope/task/pointing.hpp>

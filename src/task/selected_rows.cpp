@@ -27,20 +27,8 @@ void require_rows(const Task& task, const std::vector<int>& rows) {
 }  // namespace
 
 SelectedRows::SelectedRows(const Task& task, std::vector<int> rows)
-    : Task(static_cast<int>(rows.size()), static_cast<int>(task.jacobian().cols()), task.reference()),
-      task_(task.clone()),
-      rows_(std::move(rows)) {
+    : WrappedTask(static_cast<int>(rows.size()), task.clone()), rows_(std::move(rows)) {
   require_rows(task, rows_);
-}
-
-SelectedRows::SelectedRows(const SelectedRows& other)
-    : Task(other), task_(other.task_->clone()), rows_(other.rows_) {}
-
-std::unique_ptr<Task> SelectedRows::aimed_at(const Target<PointTarget>& point,
-                                             const Target<RotationTarget>& rotation) const {
-  auto copy = std::make_unique<SelectedRows>(*this);
-  copy->task_ = task_->aimed_at(point, rotation);
-  return copy;
 }
 
 void SelectedRows::evaluate(const RobotTerms& terms, double t) {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +23,19 @@ def centre_of_mass(positions: Mapping[str, float]) -> np.ndarray:
     """Of all links, at joint positions [m]."""
     model = pinocchio.buildModelFromUrdf(str(URDF))
     return pinocchio.centerOfMass(model, model.createData(), configuration(model, positions))
+
+
+def jacobian(positions: Mapping[str, float], frame: str, joints: Sequence[str]) -> np.ndarray:
+    """Of a frame, along the world's axes, linear above angular (6 rows): the columns of some joints."""
+    model = pinocchio.buildModelFromUrdf(str(URDF))
+    columns = pinocchio.computeFrameJacobian(
+        model,
+        model.createData(),
+        configuration(model, positions),
+        model.getFrameId(frame),
+        pinocchio.LOCAL_WORLD_ALIGNED,
+    )
+    return columns[:, [model.joints[model.getJointId(name)].idx_v for name in joints]]
 
 
 def configuration(model: pinocchio.Model, positions: Mapping[str, float]) -> np.ndarray:

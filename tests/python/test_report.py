@@ -230,6 +230,19 @@ def test_task_errors_have_norm_components_and_due_time(page):
     assert len(panels["reach: components"]["series"]) == 3
 
 
+def test_a_task_that_leaves_is_told_and_drawn(tmp_path):
+    run = make_run()
+    run.scenario["tasks"][1]["stays"] = False
+    run.log["a.turn"] = np.clip(5.0 - run.log["t"], 0.0, 1.0)
+    write_run_report(run, tmp_path / "report.html")
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    panels = panels_of(page)
+    assert values(panels["turn: activation"]["series"][0]["y"])[-1] == 0
+    assert "reach: activation" not in panels
+    assert "at the end (the task had left)" in words.task_error(run.summary, run.scenario["tasks"][1])
+    assert "turn" not in words.goal_accuracy(run.summary)
+
+
 def test_status_flags_are_strips(page):
     panel = panels_of(page)["Status"]
     assert panel["rows"] == ["limit", "scaled"]

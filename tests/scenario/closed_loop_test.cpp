@@ -1,6 +1,7 @@
 // ClosedLoop: one cycle after another, tasks that enter and leave, another reading of the scenario adopted, against a
 // controller and a plant driven by hand. LiveSimulation: cycles that are due, goals followed, what it refuses. Not here:
 // LiveGoal (task room); real time (test_play.py).
+#include "support/no_allocation.hpp"
 #include "support/robots.hpp"
 #include "support/text.hpp"
 
@@ -111,6 +112,58 @@ BOOST_AUTO_TEST_CASE(tasks_leave_and_enter_over_time) {
   BOOST_TEST(loop.task(0)->error().norm() < error);
 }
 
+BOOST_AUTO_TEST_CASE(changes_are_made_when_they_are_due) {
+  ClosedLoop loop(Scenario::load(source_path("scenarios/youbot_task_changes.yaml")));
+  const Scenario scenario = loop.scenario();
+  Controller controller(*scenario.robot, scenario.controller);  // the same by hand
+  const TaskHandle orientation = controller.add(2, *scenario.tasks[0].task);
+  const TaskHandle position = controller.add(3, *scenario.tasks[1].task);
+  TaskHandle look;
+  Vector u = Vector::Zero(8);
+  for (int cycle = 0; cycle < 10000; ++cycle) {
+    switch (cycle) {
+      case 3000:
+        controller.remove(orientation, {.over = 0.5});
+        break;
+      case 4000:
+        look = controller.add(4, *scenario.tasks[2].task, {.over = 0.5});
+        break;
+      case 6000:
+        controller.move(look, 1, {.over = 0.5});
+        break;
+      case 8000:
+        controller.replace(position, *scenario.changes[3].with, {.over = 1.0});
+        break;
+      default:
+        break;
+    }
+    controller.update(loop.position(), loop.velocity(), loop.time(), u);
+    {
+      const NoAllocation guard("cycle between changes");
+      loop.control();
+    }
+    BOOST_TEST_REQUIRE((loop.command() == u));
+    loop.move();
+  }
+  BOOST_TEST((loop.task(0) == nullptr));
+  BOOST_TEST(loop.activation(0) == 0.0);
+  BOOST_TEST(loop.activation(1) == 1.0);
+  BOOST_TEST((loop.scenario().tasks[1].task == scenario.changes[3].with));
+  BOOST_TEST(loop.scenario().tasks[2].level == 1);
+}
+
+BOOST_AUTO_TEST_CASE(changes_that_were_made_stay_under_another_reading) {
+  const auto file = source_path("scenarios/youbot_task_changes.yaml");
+  ClosedLoop loop(Scenario::load(file));
+  run(loop, 8500);
+  loop.adopt(Scenario::load(file, {{"limits.method", "chain"}}));
+  BOOST_TEST((loop.task(0) == nullptr));
+  BOOST_TEST((loop.task(2) != nullptr));
+  BOOST_TEST(loop.scenario().tasks[2].level == 1);
+  BOOST_TEST((loop.scenario().tasks[1].task == loop.scenario().changes[3].with));
+  run(loop, 100);
+}
+
 BOOST_AUTO_TEST_CASE(goes_on_under_another_reading) {
   ClosedLoop loop(velocity_scenario());
   run(loop, 500);
@@ -181,6 +234,15 @@ BOOST_AUTO_TEST_CASE(goals_stay_when_the_scenario_is_read_again) {
   live.advance(6.0);
   BOOST_TEST((end_effector(live.loop()) - kNear).norm() <= 1e-3);
   BOOST_TEST(live.loop().task(1)->gain() == 3.0);
+}
+
+BOOST_AUTO_TEST_CASE(what_a_change_brings_follows_the_goal_too) {
+  LiveSimulation live(Scenario::load(source_path("scenarios/youbot_task_changes.yaml")));
+  const Vector3 goal(0.45, 0.05, 0.2);
+  live.advance(9.5);
+  live.put_goal("ee", goal, goal_rotation());
+  live.advance(6.0);
+  BOOST_TEST((end_effector(live.loop()) - goal).norm() <= 2e-3);
 }
 
 BOOST_AUTO_TEST_CASE(says_what_cannot_change) {

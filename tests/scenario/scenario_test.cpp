@@ -10,6 +10,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 
 namespace tope::test {
@@ -178,6 +179,177 @@ BOOST_AUTO_TEST_CASE(tasks_point_move_the_centre_of_mass_and_keep_rows) {
   check_refused(old, replaced(com, "[0, 1]", "[0, 3]"), {":24: tasks.1.rows", "row 3", "rows 0 to 2"});
   check_refused(old, replaced(com, "[0, 1]", "[0, 0]"), {":24: tasks.1.rows", "row 0 is named twice"});
   check_refused(old, replaced(com, "[0, 1]", "[0.5]"), {":24: tasks.1.rows: expected whole numbers"});
+}
+
+/// Task 1 of the good scenario, and what may stand in its place.
+const std::string kReach =
+    "type: frame_position\n    level: 2\n    frame: ee\n    target: {position: [0.5, 0.1, 0.1]}";
+
+std::shared_ptr<const Task> second_task(const std::string& task) {
+  const TemporaryFile file("scenario.yaml", replaced(good_scenario(), kReach, task));
+  return Scenario::load(file.path()).tasks[1].task;
+}
+
+BOOST_AUTO_TEST_CASE(relative_poses_take_what_they_are_given) {
+  const std::string relative =
+      "type: relative_pose\n    level: 2\n    frame: ee\n    seen_from: base_link\n    target: ";
+  BOOST_TEST(second_task(relative + "{position: [0.3, 0, 0.2]}")->error_unit() == "m");
+  BOOST_TEST(
+      second_task(relative + "{quaternion: [1, 0, 0, 0], angular_velocity: [0, 0, 1]}")->error_unit() ==
+      "rad");
+  BOOST_TEST(second_task(relative + "{position: [0.3, 0, 0.2], quaternion: [1, 0, 0, 0]}")->size() == 6);
+  BOOST_TEST(
+      second_task(relative + "{waypoints: [{at: 0, position: [0, 0, 0]}, {at: 1, position: [1, 0, 0]}]}")
+          ->size() == 3);
+  check_refused(kReach, relative + "{}", {":25: tasks.1.target: RelativePose: target: names neither"});
+  check_refused(kReach, relative + "{position: [0, 0, 0], angular_velocity: [0, 0, 1]}",
+                {":25: tasks.1.target.angular_velocity: unknown key"});
+  check_refused(kReach, replaced(relative + "{position: [0, 0, 0]}", "base_link", "base_lnk"),
+                {":24: tasks.1.seen_from", "unknown frame 'base_lnk'", "'base_link'?"});
+}
+
+BOOST_AUTO_TEST_CASE(manipulability_says_of_what) {
+  const std::string raise = "type: manipulability\n    level: 2\n    frame: ee\n    target: 0.05";
+  const std::string of =
+      raise + "\n    of: {rows: [0, 1, 2], joints: [arm_joint_2, arm_joint_3, arm_joint_4]}";
+  BOOST_TEST(second_task(raise)->size() == 1);
+  BOOST_TEST(second_task(raise)->type() == "manipulability");
+  BOOST_TEST(!second_task(raise)->is_goal());
+  check_refused(kReach, of, {":25: tasks.1.of: Manipulability: the joints cannot move frame 'ee'"});
+  check_refused(kReach, replaced(of, "[0, 1, 2]", "[0, 1, 7]"),
+                {":25: tasks.1.of: Manipulability: rows", "7"});
+  check_refused(kReach, replaced(of, "[0, 1, 2]", "[0, 1, 0.5]"), {":25: tasks.1.of.rows: expected whole"});
+  check_refused(kReach, replaced(raise, "0.05", "-1"), {":24: tasks.1.target: must be positive"});
+}
+
+BOOST_AUTO_TEST_CASE(any_task_may_have_a_group_of_joints) {
+  const std::string arm = kReach + "\n    joints: [arm_joint_1, arm_joint_2, arm_joint_3]";
+  const auto task = second_task(arm);
+  BOOST_TEST(task->type() == "frame_position");
+  BOOST_TEST(task->size() == 3);
+  BOOST_TEST(second_task(arm + "\n    rows: [2]")->size() == 1);
+  check_refused(kReach, replaced(arm, "arm_joint_3", "arm_joint_9"),
+                {":25: tasks.1.joints: unknown joint 'arm_joint_9'"});
+  check_refused(kReach, kReach + "\n    joints: [base_x]",
+                {":25: tasks.1.joints: JointGroup: no joint of the group moves row 1 of frame_position"});
+}
+
+BOOST_AUTO_TEST_CASE(targets_pass_waypoints) {
+  const auto goal = [](const std::string& type, const std::string& waypoints, double t) {
+    return *second_task("type: " + type + "\n    level: 2\n    frame: ee\n    target: {waypoints: [" +
+                        waypoints + "]}")
+                ->frame_goal(t);
+  };
+  const std::string points =
+      "{at: 0, position: [0, 0, 0]}, {at: 1, position: [1, 2, 3]}, {at: 3, position: [1, 0, 0]}";
+  BOOST_TEST((goal("frame_position", points, 1.0).position->array() == Vector3(1.0, 2.0, 3.0).array()).all());
+  const std::string poses =
+      "{at: 0, position: [0, 0, 0], quaternion: [1, 0, 0, 0]}, {at: 1, position: [1, 2, 3], quaternion: "
+      "[0.707107, 0, 0, 0.707107]}";
+  BOOST_TEST((goal("frame_pose", poses, 2.0).position->array() == Vector3(1.0, 2.0, 3.0).array()).all());
+  BOOST_TEST((goal("frame_pose", poses, 2.0).rotation->col(0) - Vector3::UnitY()).norm() <= 1e-6);
+  const auto refused = [](const std::string& waypoints, std::initializer_list<std::string> parts) {
+    check_refused(kReach, replaced(kReach, "position: [0.5, 0.1, 0.1]", "waypoints: " + waypoints), parts);
+  };
+  refused("[{at: 0, position: [0, 0, 0]}]", {":24: tasks.1.target.waypoints: expected at least 2 waypoints"});
+  refused("[{at: 1, position: [0, 0, 0]}, {at: 1, position: [0, 0, 1]}]",
+          {":24: tasks.1.target.waypoints: waypoint 1: its time", "later"});
+  refused("[{position: [0, 0, 0]}, {at: 1, position: [0, 0, 1]}]",
+          {":24: tasks.1.target.waypoints.0.at: is missing"});
+  refused("[{at: 0, position: [0, 0, 0]}, {at: 1, position: [0, 0, 1], quaternion: [1, 0, 0, 0]}]",
+          {":24: tasks.1.target.waypoints.1.quaternion: unknown key"});
+  refused("[{at: 0, position: [0, 0, 0]}, {at: 1, position: [0, 0, 1]}], velocity: [1, 0, 0]",
+          {":24: tasks.1.target.velocity: unknown key"});
+}
+
+BOOST_AUTO_TEST_CASE(every_type_and_key_of_tasks_is_documented) {
+  const std::string page = read_text(source_path("docs/tasks.md"));
+  BOOST_TEST(task_type_names().size() >= 10U);
+  for (const std::string& type : task_type_names()) {
+    BOOST_TEST(page.find("| `" + type + "` (") != std::string::npos, type);
+  }
+  for (const char* key : {"rows:", "joints:", "waypoints:", "velocity:", "amplitude:", "frequency:",
+                          "angular_velocity:", "seen_from", "add:", "remove:", "move:", "replace:"}) {
+    BOOST_TEST(page.find(key) != std::string::npos, key);
+  }
+}
+
+std::string with_changes(const std::string& changes) { return good_scenario() + "changes:\n" + changes; }
+
+void check_changes_refused(const std::string& changes, std::initializer_list<std::string> parts) {
+  BOOST_TEST_CONTEXT(changes) {
+    const TemporaryFile file("scenario.yaml", with_changes(changes));
+    check_error([&] { Scenario::load(file.path()); }, parts);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(changes_of_tasks_are_read) {
+  const TemporaryFile file("scenario.yaml",
+                           with_changes("  - {at: 0.5, remove: turn}\n"
+                                        "  - {at: 1, add: reach, over: 0.2}\n"
+                                        "  - {at: 1, move: reach, level: 5}\n"
+                                        "  - {at: 2, replace: reach, with: {type: frame_position, frame: ee, "
+                                        "target: {position: [0, 0, 1]}, "
+                                        "reference: {type: predefined_time, duration: 3, gain: 2}}}\n"));
+  const Scenario scenario = Scenario::load(file.path());
+  BOOST_TEST(scenario.changes.size() == 4U);
+  BOOST_TEST((scenario.changes[0].kind == TaskChange::Kind::remove));
+  BOOST_TEST(scenario.changes[1].task == 1U);
+  BOOST_TEST(scenario.changes[1].over == 0.2);
+  BOOST_TEST(scenario.changes[2].level == 5);
+  BOOST_TEST((*scenario.changes[3].with->frame_goal(0.0)->position == Vector3::UnitZ()));
+  const TaskCourse turn = scenario.course(0);
+  BOOST_TEST((turn.at_start && !turn.at_end && !turn.always));
+  BOOST_TEST(!turn.goal_time.has_value());  // it leaves
+  const TaskCourse reach = scenario.course(1);
+  BOOST_TEST((!reach.at_start && reach.at_end && !reach.always));
+  BOOST_TEST(*reach.goal_time == 5.0);
+  BOOST_TEST(reach.lowest_level == 5);
+  check_error([&] { scenario.build_controller().task({1}); },
+              {"no task with handle 1"});  // the start has one task
+}
+
+BOOST_AUTO_TEST_CASE(a_task_that_leaves_does_not_take_the_freedom_that_is_left) {
+  const std::string posture = replaced(
+      replaced(good_scenario(), kReach, "type: posture\n    level: 2\n    target: [0, 0, 0, 0, 0, 0, 0, 0]"),
+      "mode: velocity", "mode: torque");
+  const TemporaryFile stays("scenario.yaml", posture);
+  BOOST_TEST(Scenario::load(stays.path()).tasks.size() == 2U);
+  const TemporaryFile leaves("scenario.yaml", posture + "changes: [{at: 1, remove: reach}]\n");
+  BOOST_TEST(Scenario::load(leaves.path()).tasks.back().name == "damping");
+  const TemporaryFile sinks("scenario.yaml", replaced(good_scenario(), "mode: velocity", "mode: torque") +
+                                                 "changes: [{at: 1, move: turn, level: 7}]\n");
+  BOOST_TEST(Scenario::load(sinks.path()).tasks.back().level == 8);
+}
+
+BOOST_AUTO_TEST_CASE(changes_that_make_no_sense_are_refused) {
+  check_changes_refused("  - {at: 1, over: 2}\n",
+                        {"scenario.yaml:27: changes.0: says no change", "add, remove"});
+  check_changes_refused("  - {at: 1, add: turn, remove: reach}\n",
+                        {"scenario.yaml:27: changes.0.remove: is one change, and add another"});
+  check_changes_refused("  - {at: 1, remove: trun}\n",
+                        {"scenario.yaml:27: changes.0.remove: no task is named 'trun'", "'turn'?"});
+  check_changes_refused("  - {remove: turn}\n", {"changes.0.at: is missing"});
+  check_changes_refused("  - {at: -1, remove: turn}\n",
+                        {"scenario.yaml:27: changes.0.at: must not be negative"});
+  check_changes_refused("  - {at: 1, remove: turn, over: -1}\n", {"changes.0.over: must not be negative"});
+  check_changes_refused("  - {at: 1, remove: turn, level: 2}\n", {"changes.0.level: unknown key"});
+  check_changes_refused("  - {at: 1, move: turn}\n", {"changes.0.level: is missing"});
+  check_changes_refused("  - {at: 1, move: turn, level: 0}\n", {"changes.0.level: must be at least 1"});
+  check_changes_refused("  - {at: 1, remove: turn}\n  - {at: 0.5, remove: reach}\n",
+                        {"scenario.yaml:28: changes.1.at: is before the change above it"});
+  check_changes_refused("  - {at: 1, remove: turn}\n  - {at: 2, move: turn, level: 1}\n",
+                        {"scenario.yaml:28: changes.1.move: the task was removed before"});
+  check_changes_refused("  - {at: 1, move: turn, level: 1}\n  - {at: 2, add: turn}\n",
+                        {"scenario.yaml:28: changes.1.add: the task is there already"});
+  const std::string with =
+      "  - at: 1\n    replace: reach\n    with:\n      type: frame_position\n      frame: ee\n";
+  check_changes_refused(with + "      target: {position: [0, 0]}\n",
+                        {"scenario.yaml:32: changes.0.with.target.position: expected 3 numbers"});
+  check_changes_refused(with + "      target: {position: [0, 0, 0]}\n      level: 2\n",
+                        {"scenario.yaml:33: changes.0.with.level: unknown key"});
+  check_changes_refused(with + "      target: {position: [0, 0, 0]}\n      rows: [1]\n",
+                        {"changes.0.with: has 1 rows, task 'reach' has 3"});
 }
 
 BOOST_AUTO_TEST_CASE(limit_servo_takes_one_pair_of_gains) {

@@ -93,6 +93,40 @@ BOOST_AUTO_TEST_CASE(limits_that_meet_stop_the_run) {
   check_error([&] { simulation.run(); }, {"limits of base_x at 0.1", "too near"});
 }
 
+BOOST_AUTO_TEST_CASE(changes_of_tasks_are_logged_and_make_no_jump) {
+  const Scenario scenario = Scenario::load(source_path("scenarios/youbot_task_changes.yaml"));
+  Simulation simulation(scenario, {.keep_log = true});
+  const Summary summary = simulation.run();
+  const std::vector<std::string>& columns = simulation.log().columns();
+  const auto at = [&](double t, const std::string& name) {
+    const auto place =
+        static_cast<std::size_t>(std::find(columns.begin(), columns.end(), name) - columns.begin());
+    const auto row = static_cast<std::size_t>(std::lround(t / scenario.controller.dt));
+    return simulation.log().values()[row * columns.size() + place];
+  };
+  const auto error = [&](double t, const std::string& task) {
+    return std::hypot(at(t, "e." + task + ".0"), at(t, "e." + task + ".1"),
+                      task == "look" ? 0.0 : at(t, "e." + task + ".2"));
+  };
+  // orientation leaves, look enters
+  BOOST_TEST(at(3.0, "a.orientation") == 1.0);
+  BOOST_TEST(std::abs(at(3.25, "a.orientation") - 0.5) < 1e-2);
+  BOOST_TEST(at(3.6, "a.orientation") == 0.0);
+  BOOST_TEST(at(12.0, "a.orientation") == 0.0);
+  BOOST_TEST(at(3.9, "a.look") == 0.0);
+  BOOST_TEST(at(5.0, "a.look") == 1.0);
+  // and looks as soon as it may; the position's error is measured against what replaced it
+  BOOST_TEST(error(2.9, "orientation") < 1e-2);
+  BOOST_TEST(error(12.9, "look") < 1e-3);
+  BOOST_TEST(error(7.9, "position") < 5e-3);
+  BOOST_TEST(error(12.9, "position") < 5e-3);
+  BOOST_TEST(std::isnan(summary.tasks.at("orientation").measured_error));
+  BOOST_TEST(summary.limit_violation.head(2).maxCoeff() <= 0.0);
+  Simulation finer(Scenario::load(scenario.file, {{"dt", "2.5e-4"}}), {});
+  BOOST_TEST(summary.command_jump.maxCoeff() > 3.8 * finer.run().command_jump.maxCoeff());  // none is a jump
+  BOOST_TEST(summary.time_to_goal.has_value());  // of those that stay
+}
+
 BOOST_AUTO_TEST_CASE(repeats_bit_for_bit) {
   const auto values = [] {
     Simulation simulation(short_scenario(), {.keep_log = true});

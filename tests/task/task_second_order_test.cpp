@@ -1,14 +1,19 @@
 // Error rate and drift of every task against central differences along joint motions with constant acceleration, with
 // fixed and moving targets: d2e/dt2 = J a + drift. Not here: the first order (task_test).
+#include "support/no_allocation.hpp"
 #include "support/robots.hpp"
 
+#include <tope/reference/waypoints.hpp>
 #include <tope/task/center_of_mass.hpp>
 #include <tope/task/damping.hpp>
 #include <tope/task/frame_orientation.hpp>
 #include <tope/task/frame_pose.hpp>
 #include <tope/task/frame_position.hpp>
+#include <tope/task/joint_group.hpp>
+#include <tope/task/manipulability.hpp>
 #include <tope/task/pointing.hpp>
 #include <tope/task/posture.hpp>
+#include <tope/task/relative_pose.hpp>
 #include <tope/task/rotation_error.hpp>
 #include <tope/task/selected_rows.hpp>
 
@@ -16,6 +21,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 namespace tope::test {
 namespace {
@@ -117,6 +124,60 @@ BOOST_AUTO_TEST_CASE(center_of_mass_accelerates) {
   Random random(18);
   CenterOfMass moving(robot, moving_along_sine(Vector3(random.vector(3)), Vector3(random.vector(3)), 0.5));
   check_second_order(robot, moving, 50);
+}
+
+BOOST_AUTO_TEST_CASE(manipulability_accelerates) {
+  const Robot robot = youbot();
+  Manipulability all(robot, "ee", 0.5);
+  check_second_order(robot, all, 50);
+  for (const char* frame : {"ee", "arm_link_4"}) {
+    Manipulability position(
+        robot, frame, 0.1,
+        {.rows = {0, 1, 2},
+         .joints = {"arm_joint_1", "arm_joint_2", "arm_joint_3", "arm_joint_4", "arm_joint_5"}});
+    check_second_order(robot, position, 50);
+    Manipulability one(robot, frame, 0.5, {.rows = {2}});
+    check_second_order(robot, one, 50);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(relative_pose_accelerates) {
+  const Robot robot = youbot();
+  Random random(20);
+  for (const auto& [frame, seen_from] :
+       {std::pair{"ee", "base_link"}, {"arm_link_2", "ee"}, {"base_link", "arm_link_4"}}) {
+    RelativePose moving(
+        robot, frame, seen_from,
+        {.position = moving_along_sine(Vector3(random.vector(3)), Vector3(random.vector(3)), 0.3),
+         .rotation = spinning(random.rotation(), random.vector(3, 0.4))});
+    check_second_order(robot, moving, 100);
+    RelativePose position(robot, frame, seen_from, {.position = PointTarget{random.vector(3)}});
+    check_second_order(robot, position, 50);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(updates_allocate_nothing) {
+  const Robot robot = youbot();
+  Random random(24);
+  const std::vector<PointWaypoint> points{
+      {0.0, random.vector(3)}, {1.0, random.vector(3)}, {3.0, random.vector(3)}};
+  const FramePose pose(robot, "ee", through(points), spinning(random.rotation(), random.vector(3, 0.4)));
+  RelativePose relative(robot, "ee", "base_link",
+                        {.position = through(points), .rotation = RotationTarget{random.rotation()}});
+  JointGroup group(robot, SelectedRows(pose, {0, 1, 2}),
+                   {"base_x", "arm_joint_2", "arm_joint_3", "arm_joint_4"});
+  Manipulability all(robot, "ee", 0.5);
+  RobotTerms terms(robot);
+  const Vector no_acceleration = Vector::Zero(robot.nv());
+  const Vector q = random_position(random, robot, 0.0);
+  for (Task* task : {static_cast<Task*>(&relative), static_cast<Task*>(&group), static_cast<Task*>(&all)}) {
+    const NoAllocation guard(std::string(task->type()));
+    for (const double t : {0.0, 0.5, 4.0}) {
+      terms.update_dynamics(q, no_acceleration);
+      task->update(terms, t);
+      task->update_second_order(terms, t, no_acceleration);
+    }
+  }
 }
 
 BOOST_AUTO_TEST_CASE(selected_rows_accelerate) {

@@ -8,9 +8,12 @@
 #include <tope/task/frame_orientation.hpp>
 #include <tope/task/frame_pose.hpp>
 #include <tope/task/frame_position.hpp>
+#include <tope/task/joint_group.hpp>
 #include <tope/task/joint_position.hpp>
+#include <tope/task/manipulability.hpp>
 #include <tope/task/pointing.hpp>
 #include <tope/task/posture.hpp>
+#include <tope/task/relative_pose.hpp>
 #include <tope/task/selected_rows.hpp>
 
 #include <Eigen/Geometry>
@@ -60,6 +63,9 @@ double check_rates(const Robot& robot, Task& task, int seeds, double skip_above 
   BOOST_TEST_MESSAGE(task.type() << ": largest deviation " << largest);
   return largest;
 }
+
+const std::vector<std::string> kArm{"arm_joint_1", "arm_joint_2", "arm_joint_3", "arm_joint_4",
+                                    "arm_joint_5"};
 
 Target<RotationTarget> spinning_target(Random& random) {
   return spinning(random.rotation(), random.vector(3, 0.4));
@@ -133,6 +139,164 @@ BOOST_AUTO_TEST_CASE(center_of_mass_rates) {
   check_rates(robot, fixed, 50);
   CenterOfMass moving(robot, moving_along_line(Vector3(random.vector(3)), Vector3(random.vector(3))));
   check_rates(robot, moving, 50);
+}
+
+BOOST_AUTO_TEST_CASE(relative_pose_rates) {
+  const Robot robot = youbot();
+  Random random(20);
+  for (const auto& [frame, seen_from] :
+       {std::pair{"ee", "base_link"}, {"arm_link_2", "ee"}, {"base_link", "arm_link_4"}}) {
+    RelativePose fixed(
+        robot, frame, seen_from,
+        {.position = PointTarget{random.vector(3)}, .rotation = RotationTarget{random.rotation()}});
+    check_rates(robot, fixed, 50);
+    RelativePose moving(
+        robot, frame, seen_from,
+        {.position = moving_along_sine(Vector3(random.vector(3)), Vector3(random.vector(3)), 0.3),
+         .rotation = spinning_target(random)});
+    check_rates(robot, moving, 100);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(relative_pose_is_that_of_two_frames) {
+  const Robot robot = youbot();
+  Random random(21);
+  RobotTerms terms(robot);
+  terms.update(random_position(random, robot, 0.0), Vector::Zero(robot.nv()));
+  Eigen::Isometry3d world_T_ee = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d world_T_base = Eigen::Isometry3d::Identity();
+  for (auto& [pose, name] : {std::pair{&world_T_ee, "ee"}, {&world_T_base, "base_link"}}) {
+    pose->linear() = terms.frame_rotation(robot.frame_index(name));
+    pose->translation() = terms.frame_position(robot.frame_index(name));
+  }
+  const Eigen::Isometry3d base_T_ee = world_T_base.inverse() * world_T_ee;
+  const Vector3 point = random.vector(3);
+  RelativePose position(robot, "ee", "base_link", {.position = PointTarget{point}});
+  position.update(terms, 0.0);
+  BOOST_TEST((position.error() - (base_T_ee.translation() - point)).norm() <= 1e-14);
+  BOOST_TEST(position.jacobian().leftCols(3).norm() <= 1e-14);  // the base carries both
+  RelativePose rotation(robot, "ee", "base_link", {.rotation = RotationTarget{base_T_ee.linear()}});
+  rotation.update(terms, 0.0);
+  BOOST_TEST(rotation.error().norm() <= 1e-14);
+  RelativePose both(robot, "ee", "base_link",
+                    {.position = PointTarget{point}, .rotation = RotationTarget{base_T_ee.linear()}});
+  both.update(terms, 0.0);
+  BOOST_TEST((both.jacobian().topRows(3) - position.jacobian()).norm() == 0.0);
+  BOOST_TEST((both.jacobian().bottomRows(3) - rotation.jacobian()).norm() == 0.0);
+  BOOST_TEST(position.error_unit() == "m");
+  BOOST_TEST(rotation.error_unit() == "rad");
+  BOOST_TEST(both.error_unit() == "mixed");
+}
+
+BOOST_AUTO_TEST_CASE(joint_group_is_the_task_with_columns_left_out) {
+  const Robot robot = youbot();
+  Random random(22);
+  FramePose pose(robot, "ee", moving_along_sine(Vector3(random.vector(3)), Vector3(random.vector(3)), 0.3),
+                 spinning_target(random));
+  JointGroup group(robot, SelectedRows(pose, {0, 1, 2, 5}),
+                   {"arm_joint_1", "base_x", "arm_joint_3", "arm_joint_5"});
+  RobotTerms terms(robot);
+  const Vector no_acceleration = Vector::Zero(robot.nv());
+  Vector member = Vector::Zero(robot.nv());
+  for (const char* joint : {"arm_joint_1", "base_x", "arm_joint_3", "arm_joint_5"}) {
+    member[robot.joint_index(joint)] = 1.0;
+  }
+  const std::vector<int> rows{0, 1, 2, 5};
+  for (const double t : {1.0, 2.5}) {
+    terms.update_dynamics(random_position(random, robot, 0.0), random.vector(robot.nv()));
+    pose.update_second_order(terms, t, no_acceleration);
+    group.update_second_order(terms, t, no_acceleration);
+    const Matrix columns = pose.jacobian()(rows, Eigen::all) * member.asDiagonal();
+    BOOST_TEST((group.jacobian() - columns).norm() == 0.0);
+    BOOST_TEST((group.error() - pose.error()(rows)).norm() == 0.0);
+    BOOST_TEST((group.error_rate() - pose.error_rate()(rows)).norm() <= 1e-13);  // of all joints
+    BOOST_TEST((group.drift() - pose.drift()(rows)).norm() == 0.0);
+  }
+  BOOST_TEST(group.type() == "frame_pose");
+  BOOST_TEST(group.clone()->size() == 4);
+}
+
+BOOST_AUTO_TEST_CASE(joint_group_of_joint_rows_keeps_those_of_its_joints) {
+  const Robot robot = youbot();
+  Random random(23);
+  const Vector q = random_position(random, robot, 0.0);
+  RobotTerms terms(robot);
+  terms.update(q, Vector::Zero(robot.nv()));
+  JointGroup arm(robot, Posture(robot, Vector::Constant(8, 0.1)), {"arm_joint_2", "arm_joint_1"});
+  arm.update(terms, 0.0);
+  BOOST_TEST(arm.size() == 2);
+  BOOST_TEST((arm.error() - Vector(q(std::vector<int>{4, 3}).array() - 0.1)).norm() <= 1e-15);
+  BOOST_TEST(arm.jacobian()(0, 4) == 1.0);
+  BOOST_TEST(arm.jacobian().sum() == 2.0);
+  BOOST_TEST(!arm.is_goal());
+  BOOST_TEST(!arm.is_motion());
+}
+
+/// sqrt(det(J J^T)) of some rows and columns of a frame's Jacobian.
+double yoshikawa(const RobotTerms& terms, int frame, const std::vector<int>& rows,
+                 const std::vector<int>& columns) {
+  Matrix jacobian(6, terms.velocity().size());
+  terms.frame_jacobian(frame, jacobian);
+  const Matrix part = jacobian(rows, columns);
+  return std::sqrt((part * part.transpose()).determinant());
+}
+
+BOOST_AUTO_TEST_CASE(manipulability_is_yoshikawas) {
+  const Robot robot = youbot();
+  const int ee = robot.frame_index("ee");
+  RobotTerms terms(robot);
+  Manipulability all(robot, "ee", 0.5);
+  Manipulability arm(robot, "ee", 0.02, {.rows = {2, 0, 1}, .joints = kArm});
+  for (int seed = 0; seed < 20; ++seed) {
+    Random random(seed);
+    terms.update(random_position(random, robot, 0.0), Vector::Zero(robot.nv()));
+    all.update(terms, 0.0);
+    arm.update(terms, 0.0);
+    const double expected = yoshikawa(terms, ee, {0, 1, 2, 3, 4, 5}, {0, 1, 2, 3, 4, 5, 6, 7});
+    BOOST_TEST(all.measure() == expected, boost::test_tools::tolerance(1e-9));
+    BOOST_TEST(arm.measure() == yoshikawa(terms, ee, {0, 1, 2}, {3, 4, 5, 6, 7}),
+               boost::test_tools::tolerance(1e-9));
+    // the target itself is where the error is zero
+    Manipulability there(robot, "ee", expected);
+    there.update(terms, 0.0);
+    BOOST_TEST(std::abs(there.error()[0]) <= 1e-12);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(manipulability_rates) {
+  const Robot robot = youbot();
+  Manipulability all(robot, "ee", 0.5);
+  check_rates(robot, all, 50);
+  for (const char* frame : {"ee", "arm_link_4"}) {
+    Manipulability position(robot, frame, 0.02, {.rows = {0, 1, 2}, .joints = kArm});
+    check_rates(robot, position, 50);
+    Manipulability mixed(robot, frame, 0.3, {.rows = {5, 1}});
+    check_rates(robot, mixed, 50);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(manipulability_is_smooth_through_a_singularity) {
+  const Robot robot = youbot();
+  RobotTerms terms(robot);
+  Manipulability task(robot, "ee", 0.02, {.rows = {0, 1, 2}, .joints = kArm});
+  const Vector upright = Vector::Zero(robot.nv());
+  const Vector bend = Vector::Unit(robot.nv(), 5);
+  double nearest = 1.0;
+  Vector last;
+  for (int i = -1000; i <= 1000; ++i) {
+    terms.update_dynamics(upright + 5e-5 * i * bend, bend);
+    task.update_second_order(terms, 0.0, Vector::Zero(robot.nv()));
+    nearest = std::min(nearest, task.measure());
+    const Vector row = task.jacobian().row(0);
+    BOOST_TEST(row.allFinite());
+    BOOST_TEST(task.drift().allFinite());
+    BOOST_TEST(task.rate().lpNorm<Eigen::Infinity>() <= 2.0);  // the gain
+    if (last.size() > 0) {
+      BOOST_TEST((row - last).norm() <= 5e-2);
+    }
+    last = row;
+  }
+  BOOST_TEST(nearest < 1e-6);
 }
 
 BOOST_AUTO_TEST_CASE(selected_rows_rates) {
@@ -327,6 +491,32 @@ BOOST_AUTO_TEST_CASE(bad_targets_are_refused) {
   check_error([&] { SelectedRows(position, {-1}); }, {"row -1", "rows 0 to 2"});
   check_error([&] { SelectedRows(position, {0, 1, 0}); }, {"row 0 is named twice"});
   check_error([&] { JointPosition(robot, {}); }, {"JointPosition", "names no joint"});
+  check_error([&] { RelativePose(robot, "ee", "base_link", {}); }, {"RelativePose: target", "neither"});
+  check_error([&] { RelativePose(robot, "ee", "base", {.position = PointTarget{origin}}); },
+              {"unknown frame 'base'"});
+  check_error([&] { RelativePose(robot, "ee", "arm_link_5", {.position = PointTarget{origin}}); },
+              {"no joint moves frame 'ee' against frame 'arm_link_5'"});
+  check_error([&] { RelativePose(robot, "ee", "base_link", {.rotation = RotationTarget{mirrored}}); },
+              {"RelativePose: rotation", "det R = -1"});
+  check_error([&] { RelativePose(robot, "ee", "base_link", {.position = PointTarget{{0.0, NAN, 0.0}}}); },
+              {"RelativePose: position", "finite"});
+  check_error([&] { Manipulability(robot, "ee", 0.0); }, {"Manipulability: target", "positive", "0.0"});
+  check_error([&] { Manipulability(robot, "hand", 1.0); }, {"unknown frame 'hand'"});
+  check_error([&] { Manipulability(robot, "ee", 1.0, {.rows = {}}); }, {"rows: names no row"});
+  check_error([&] { Manipulability(robot, "ee", 1.0, {.rows = {6}}); }, {"rows 0 to 5, got 6"});
+  check_error([&] { Manipulability(robot, "ee", 1.0, {.rows = {1, 1}}); }, {"row 1 is named twice"});
+  check_error([&] { Manipulability(robot, "ee", 1.0, {.joints = {"arm_joint_6"}}); },
+              {"unknown joint 'arm_joint_6'"});
+  check_error([&] { Manipulability(robot, "ee", 1.0, {.joints = {"base_x", "base_x"}}); },
+              {"'base_x' is named twice"});
+  check_error([&] { Manipulability(robot, "ee", 1.0, {.joints = kArm}); },
+              {"cannot move frame 'ee' along all of its 6 rows", "zero in every state"});
+  check_error([&] { JointGroup(robot, position, {}); }, {"JointGroup", "names no joint"});
+  check_error([&] { JointGroup(robot, Damping(robot), {}); }, {"JointGroup", "names no joint"});
+  check_error([&] { JointGroup(robot, position, {"arm_joint_6"}); }, {"unknown joint 'arm_joint_6'"});
+  check_error([&] { JointGroup(robot, position, {"base_x", "base_x"}); }, {"'base_x' is named twice"});
+  check_error([&] { JointGroup(robot, position, {"base_x", "base_y"}); },
+              {"no joint of the group moves row 2 of frame_position"});
   check_error([&] { JointPosition(robot, {{"arm_joint_6", 0.0}}); },
               {"unknown joint 'arm_joint_6'", "did you mean"});
   check_error([&] { JointPosition(robot, {{"base_x", 0.0}, {"base_x", 1.0}}); }, {"base_x", "named twice"});
@@ -352,13 +542,15 @@ BOOST_AUTO_TEST_CASE(frame_tasks_tell_their_goal_and_can_be_aimed_anew) {
   const FrameOrientation orientation(robot, "ee", turned);
   const FramePose pose(robot, "arm_link_3", from, turned);
   const SelectedRows height(position, {2});
+  const JointGroup by_arm(robot, position, {"arm_joint_1", "arm_joint_2", "arm_joint_3"});
   BOOST_TEST((*position.frame_goal(0.0)->position == from));
   BOOST_TEST(!position.frame_goal(0.0)->rotation.has_value());
   BOOST_TEST((*orientation.frame_goal(0.0)->rotation == turned));
   BOOST_TEST(robot.frame_name(pose.frame_goal(0.0)->frame) == "arm_link_3");
   BOOST_TEST(!Damping(robot).frame_goal(0.0).has_value());
   for (const Task* task : {static_cast<const Task*>(&position), static_cast<const Task*>(&orientation),
-                           static_cast<const Task*>(&pose), static_cast<const Task*>(&height)}) {
+                           static_cast<const Task*>(&pose), static_cast<const Task*>(&height),
+                           static_cast<const Task*>(&by_arm)}) {
     const auto aimed = task->aimed_at(PointTarget{.position = to}, RotationTarget{.rotation = other});
     const FrameGoal goal = *aimed->frame_goal(0.0);
     BOOST_TEST((aimed->type() == task->type()));

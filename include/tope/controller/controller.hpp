@@ -113,7 +113,7 @@ class Controller {
   void leave_bias_to_tasks();
   void to_motion(const Vector& y, Vector& motion) const;
   CommandBounds bound_velocity();
-  CommandBounds bound_torque();
+  CommandBounds bound_torque(const VectorArg& q);
   void report(const CommandBounds& bounds);
 
   Robot robot_;

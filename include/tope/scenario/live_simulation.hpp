@@ -10,7 +10,8 @@
 namespace tope {
 
 /// A scenario that never ends and that can be changed while it runs: goals dragged, limits and options replaced, tasks
-/// inserted and removed. The goals of tasks about a frame stand where they are at t = 0, until they are put elsewhere.
+/// inserted and removed. The goals of tasks about a frame stand where they are at t = 0, until they are put elsewhere; what
+/// a change of the scenario puts in a task's place follows them too.
 /// For one thread.
 class LiveSimulation {
  public:

@@ -15,7 +15,7 @@ namespace tope {
 struct TaskResult {
   double final_error = 0.0;            ///< norm [m or rad]
   std::optional<double> at_goal_time;  ///< norm at the time its reference promises
-  double measured_error = 0.0;         ///< final norm as the robot's sensors have it
+  double measured_error = 0.0;         ///< final norm as the robot's sensors have it; NaN: has left
   double acceleration = 0.0;           ///< root mean square over the last half of the run [m/s2 or rad/s2]
 };
 

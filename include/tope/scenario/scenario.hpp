@@ -6,9 +6,11 @@
 #include <tope/robot/robot.hpp>
 #include <tope/task/task.hpp>
 
+#include <cstddef>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +22,29 @@ struct ScenarioTask {
   int level = 1;
   std::shared_ptr<const Task> task;
   double tolerance = 1e-3;  ///< norm of the error below which its goal counts as reached [m or rad]
+};
+
+/// The types of tasks that a scenario can name.
+std::vector<std::string> task_type_names();
+
+/// What happens to a task of a scenario at one moment, and over the seconds after it.
+struct TaskChange {
+  enum class Kind { add, remove, move, replace };
+  Kind kind = Kind::add;
+  std::size_t task = 0;                ///< its number in Scenario::tasks
+  double at = 0.0;                     ///< [s]
+  double over = 0.0;                   ///< [s]
+  int level = 1;                       ///< to which it moves
+  std::shared_ptr<const Task> with{};  ///< what replaces it, with as many rows
+};
+
+/// When a task of a scenario is there.
+struct TaskCourse {
+  bool at_start = true;  ///< false for a task that is added later
+  bool at_end = true;
+  bool always = true;
+  int lowest_level = 1;               ///< that it takes on the way
+  std::optional<double> goal_time{};  ///< when the last of its references promises to arrive [s]
 };
 
 /// An upper limit that moves with constant velocity for a while.
@@ -52,12 +77,16 @@ struct Scenario {
   double duration = 0.0;  ///< [s]
   int log_every = 1;      ///< cycles between rows of the log
   std::vector<ScenarioTask> tasks;
+  std::vector<TaskChange> changes;   ///< of the tasks, by time
   std::vector<std::string> notices;  ///< what was added or is worth knowing, a sentence each
 
   /// Bound of each joint's command (n): of its speed, or of its torque in torque mode.
   const Vector& command_bound() const;
 
-  /// A controller as the scenario describes it, with its tasks. Errors: ConfigError when it refuses its options.
+  /// What the changes make of a task.
+  TaskCourse course(std::size_t task) const;
+
+  /// A controller as the scenario describes it, with the tasks of its start. Errors: ConfigError when it refuses its options.
   Controller build_controller() const;
 
   /// Reads a file, with "--set" overrides (dotted key -> YAML value). Errors: ConfigError naming file, line

@@ -25,7 +25,8 @@ class Simulation {
   /// Errors: ConfigError when the controller refuses its options, Error when the log cannot be written.
   Simulation(const Scenario& scenario, const SimulationOptions& options);
 
-  /// Runs to the end of the scenario.
+  /// Runs to the end of the scenario. The log has `a.<task>`, how far a task is there, for tasks that changes are about, and
+  /// goes on with the errors of those that have left.
   Summary run();
 
   const Log& log() const { return log_; }
@@ -43,7 +44,8 @@ class Simulation {
   std::vector<double> row_;
   RobotTerms true_terms_;
   std::vector<std::unique_ptr<Task>> true_tasks_;
-  std::vector<Vector> errors_;  // of each task at the true state
+  std::vector<std::shared_ptr<const Task>> true_of_;  // what they are copies of
+  std::vector<Vector> errors_;                        // of each task at the true state
   std::vector<double> norms_;
   std::vector<double> cycle_times_;
 };

@@ -27,7 +27,7 @@ class Task {
 
   int size() const { return static_cast<int>(error_.size()); }
   virtual std::string_view type() const = 0;
-  /// "m", "rad", or "mixed" where rows differ.
+  /// "m", "rad", empty for a pure number, or "mixed" where rows differ.
   virtual std::string_view error_unit() const = 0;
   /// False for tasks that only take up freedom that is left (posture, damping).
   virtual bool is_goal() const { return true; }
@@ -85,7 +85,8 @@ class Task {
 
   /// Fills error_, jacobian_ and feedforward_.
   virtual void evaluate(const RobotTerms& terms, double t) = 0;
-  /// Fills drift_, after evaluate() and error_rate_. Tasks whose Jacobian and target stand still have none.
+  /// Fills drift_, after evaluate() and error_rate_, which a task whose J leaves joints out mends. Tasks whose Jacobian
+  /// and target stand still have no drift.
   virtual void evaluate_drift(const RobotTerms& /*terms*/, double /*t*/) {}
   /// For a task made of another: evaluates that one without its reference; then, if needed, its error_rate() and
   /// drift().
