@@ -4,12 +4,14 @@
 
 namespace tope {
 
-Stack::Stack(int n)
+Stack::Stack(int n, int inequalities)
     : motion(Matrix::Identity(n, n)),
       limit_activation(Vector::Zero(n)),
       limit_target(Vector::Zero(n)),
       motion_lower(Vector::Zero(n)),
-      motion_upper(Vector::Zero(n)) {}
+      motion_upper(Vector::Zero(n)),
+      inequality(Matrix::Zero(inequalities, n)),
+      inequality_lower(Vector::Zero(inequalities)) {}
 
 int Stack::max_level_rows() const {
   int largest = 0;
