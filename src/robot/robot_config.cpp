@@ -1,4 +1,5 @@
 #include "../common/yaml_reader.hpp"
+#include "collision_reader.hpp"
 
 #include <tope/robot/robot.hpp>
 
@@ -48,6 +49,10 @@ RobotConfig RobotConfig::from_yaml(const std::filesystem::path& file) {
   config.effort_limit = positive_numbers(yaml, "effort_limit");
   if (const auto base = yaml.optional_map("mecanum_base")) {
     config.mecanum_base = read_base(*base);
+  }
+  if (const auto collisions = yaml.optional_map("collisions")) {
+    config.collisions = read_collision_geometry(*collisions, "bodies");
+    collisions->finish();
   }
   yaml.finish();
   return config;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tope/common/types.hpp>
+#include <tope/robot/collision_geometry.hpp>
 #include <tope/robot/mecanum_base.hpp>
 
 #include <filesystem>
@@ -30,6 +31,8 @@ struct RobotConfig {
     MecanumBaseOptions wheels;
   };
   std::optional<Base> mecanum_base;
+  /// Spheres that cover the links, bodies that they keep clear of.
+  CollisionGeometry collisions;
 
   /// Reads a robot's YAML file. Errors: ConfigError with file, line and key.
   static RobotConfig from_yaml(const std::filesystem::path& file);
@@ -56,6 +59,10 @@ class Robot {
   /// Errors: ConfigError for an unknown name, with the nearest known one.
   int joint_index(const std::string& name) const;
   int frame_index(const std::string& name) const;
+  /// True for a frame that no joint moves.
+  bool fixed_in_world(int frame) const;
+  /// True for frames on one link or on two that a joint connects.
+  bool neighbours(int frame, int other) const;
   const std::string& frame_name(int frame) const { return frame_names_[static_cast<std::size_t>(frame)]; }
 
   /// Bounds of each joint (nv). Infinite where a joint has none.
@@ -72,6 +79,7 @@ class Robot {
   void check_bounds() const;
 
   const std::optional<MecanumBase>& base() const { return base_; }
+  const CollisionGeometry& collisions() const { return collisions_; }
   const RobotModel& model() const { return *model_; }
 
  private:
@@ -89,6 +97,7 @@ class Robot {
   Vector velocity_limit_;
   Vector effort_limit_;
   std::optional<MecanumBase> base_;
+  CollisionGeometry collisions_;
 };
 
 }  // namespace tope
