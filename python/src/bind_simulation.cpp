@@ -8,7 +8,9 @@
 #include <nanobind/stl/function.h>
 #include <nanobind/stl/string_view.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -96,6 +98,18 @@ nb::dict by_joint(const Robot& robot, const Vector& values, const Vector& scale)
   return entry;
 }
 
+/// {pair: distance, "overall": the least}.
+nb::dict by_pair(const std::map<std::string, double>& distances) {
+  nb::dict entry;
+  double overall = std::numeric_limits<double>::infinity();
+  for (const auto& [pair, distance] : distances) {
+    entry[pair.c_str()] = distance;
+    overall = std::min(overall, distance);
+  }
+  entry["overall"] = overall;
+  return entry;
+}
+
 nb::dict describe_summary(const Scenario& scenario, const Summary& summary) {
   const Robot& robot = *scenario.robot;
   const Vector ones = Vector::Ones(robot.nv());
@@ -121,6 +135,9 @@ nb::dict describe_summary(const Scenario& scenario, const Summary& summary) {
   entry["velocity_variation"] = by_joint(robot, summary.velocity_variation, robot.velocity_limit());
   entry["sensor_error"] = by_joint(robot, summary.sensor_error, ones);
   entry["contacts"] = nb::cast(summary.contacts);
+  if (!summary.least_distance.empty()) {
+    entry["least_distance"] = by_pair(summary.least_distance);
+  }
   entry["buffer_time"] = by_joint(robot, summary.buffer_time, ones);
   entry["task_error"] = errors;
   entry["time_to_goal"] = optional_number(summary.time_to_goal);

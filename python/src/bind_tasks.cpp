@@ -1,4 +1,5 @@
 #include "bindings.hpp"
+#include "numbers.hpp"
 #include "task_spec.hpp"
 
 #include <tope/common/error.hpp>
@@ -13,8 +14,6 @@
 #include <tope/task/rotation_error.hpp>
 #include <tope/task/selected_rows.hpp>
 
-#include <Eigen/Geometry>
-
 #include <cmath>
 #include <utility>
 
@@ -23,35 +22,6 @@ using namespace nb::literals;
 
 namespace tope::python {
 namespace {
-
-/// Anything that numpy makes an array of numbers from, a list for example.
-nb::object numbers_from(const nb::handle& values) {
-  return nb::module_::import_("numpy").attr("asarray")(values, "dtype"_a = "float64");
-}
-
-template <typename T>
-T numbers_from(const nb::handle& values, const char* what, const char* expected) {
-  T result;
-  if (!nb::try_cast<T>(numbers_from(values), result)) {
-    throw ConfigError(std::string(what) + ": expected " + expected);
-  }
-  return result;
-}
-
-/// A 3 x 3 matrix, or a quaternion w, x, y, z.
-Matrix3 rotation_from(const nb::handle& target) {
-  const nb::object numbers = numbers_from(target);
-  Matrix3 matrix;
-  if (nb::try_cast<Matrix3>(numbers, matrix)) {
-    return matrix;
-  }
-  const auto wxyz = numbers_from<Eigen::Vector4d>(numbers, "target",
-                                                  "a 3 x 3 rotation matrix or a quaternion (w, x, y, z)");
-  if (std::abs(wxyz.norm() - 1.0) > 1e-2) {
-    throw ConfigError("target: not a rotation: the norm of the quaternion is " + std::to_string(wxyz.norm()));
-  }
-  return Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized().toRotationMatrix();
-}
 
 Vector3 point_at(const nb::handle& target) {
   return numbers_from<Vector3>(target, "target", "a point of three numbers [m]");
@@ -91,11 +61,12 @@ Target<PointTarget> point_from(const nb::object& target) {
 /// A rotation, or a function of time that returns a rotation and its angular velocity.
 Target<RotationTarget> rotating_from(const nb::object& target) {
   if (PyCallable_Check(target.ptr()) == 0) {
-    return RotationTarget{.rotation = rotation_from(target)};
+    return RotationTarget{.rotation = rotation_from(target, "target")};
   }
   return moving_target<RotationTarget>([target](double t) {
     const nb::tuple sample = nb::cast<nb::tuple>(target(t));
-    return RotationTarget{.rotation = rotation_from(sample[0]), .angular_velocity = point_at(sample[1])};
+    return RotationTarget{.rotation = rotation_from(sample[0], "target"),
+                          .angular_velocity = point_at(sample[1])};
   });
 }
 

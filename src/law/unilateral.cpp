@@ -47,6 +47,7 @@ Unilateral::Unilateral(const Stack& stack, const Options& options)
   require_positive("unilateral: fine_below", options.fine_below);
   require_positive("unilateral: lock", options.lock);
   require_positive("unilateral: headroom", options.headroom);
+  require_positive("unilateral: inequality_headroom", options.inequality_headroom);
   require_positive("unilateral: softness", options.softness);
   if (options.fine_damping > options.damping) {
     throw ConfigError("unilateral: fine_damping " + std::to_string(options.fine_damping) +
@@ -170,7 +171,8 @@ void Unilateral::set_bounds(const Stack& stack, int level) {
   lower_.head(size_) = (stack.motion_lower - motion).array() + headroom;
   upper_.head(size_) = (stack.motion_upper - motion).array() - headroom;
   const auto others = motion_.segment(size_, inequalities_);
-  lower_.tail(inequalities_) = (stack.inequality_lower - slack_ - others).array() + headroom;
+  lower_.tail(inequalities_) =
+      (stack.inequality_lower - slack_ - others).array() + options_.inequality_headroom / (1.0 + level);
 }
 
 /// True when every sigma exceeds the lock.

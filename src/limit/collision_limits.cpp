@@ -268,7 +268,6 @@ void CollisionLimits::locate(const RobotTerms& terms) {
 
 void CollisionLimits::update(const RobotTerms& terms) {
   locate(terms);
-  pressing_slack_ = gain_ * margin_;
   motion_lower_ = -gain_ * (distance_.array() - margin_);
   for (std::size_t i = 0; i < geometry_->pairs.size(); ++i) {
     const Geometry::Pair& pair = geometry_->pairs[i];
@@ -288,7 +287,6 @@ void CollisionLimits::update_second_order(const RobotTerms& terms) {
   for (Geometry::Body& body : geometry_->bodies) {
     body.move(terms);
   }
-  pressing_slack_ = gain_ * servo_gain_ * margin_;
   for (std::size_t i = 0; i < geometry_->pairs.size(); ++i) {
     const Geometry::Pair& pair = geometry_->pairs[i];
     const Geometry::Ball& ball = geometry_->balls[pair.ball];
@@ -304,13 +302,12 @@ void CollisionLimits::update_second_order(const RobotTerms& terms) {
   }
 }
 
-int CollisionLimits::pressed_by(const VectorArg& motion) const {
+int CollisionLimits::pressed_by(const VectorArg& motion, double slack) const {
   int pressed = -1;
-  double least = pressing_slack_;
   for (int i = 0; i < size(); ++i) {
-    const double slack = jacobian_.row(i).dot(motion) - motion_lower_[i];
-    if (slack < least) {
-      least = slack;
+    const double room = jacobian_.row(i).dot(motion) - motion_lower_[i];
+    if (room < slack) {
+      slack = room;
       pressed = i;
     }
   }

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 namespace tope {
 namespace {
@@ -10,7 +11,7 @@ constexpr int kProgressSteps = 200;
 
 bool has_sensors(const Scenario& scenario) { return scenario.plant == "mujoco"; }
 
-std::vector<std::string> log_columns(const Scenario& scenario) {
+std::vector<std::string> log_columns(const Scenario& scenario, const CollisionLimits* distances) {
   std::vector<std::string> columns{"t"};
   const std::vector<std::string>& joints = scenario.robot->joint_names();
   for (const char* quantity : {"q.", "v.", "u."}) {
@@ -26,6 +27,11 @@ std::vector<std::string> log_columns(const Scenario& scenario) {
   for (const ScenarioTask& task : scenario.tasks) {
     for (int i = 0; i < task.task->size(); ++i) {
       columns.push_back("e." + task.name + "." + std::to_string(i));
+    }
+  }
+  if (distances) {
+    for (const std::string& pair : distances->names()) {
+      columns.push_back("d." + pair);
     }
   }
   columns.emplace_back("scale");
@@ -71,7 +77,7 @@ double elapsed_us(std::chrono::steady_clock::time_point begin) {
 Simulation::Simulation(const Scenario& scenario, const SimulationOptions& options)
     : options_(options),
       loop_(scenario),
-      log_(log_columns(scenario), options.log_file, options.keep_log),
+      log_(log_columns(scenario, loop_.controller().collisions()), options.log_file, options.keep_log),
       true_terms_(*scenario.robot) {
   for (const ScenarioTask& task : scenario.tasks) {
     true_tasks_.push_back(task.task->clone());
@@ -79,6 +85,11 @@ Simulation::Simulation(const Scenario& scenario, const SimulationOptions& option
   row_.reserve(log_.columns().size());
   errors_.resize(scenario.tasks.size());
   norms_.resize(scenario.tasks.size());
+  if (const auto& collisions = scenario.controller.limits.collisions) {
+    true_distances_.emplace(*scenario.robot, *collisions, JointLimits::default_gain,
+                            JointLimitOptions{}.servo_gain);
+    least_distance_ = Vector::Constant(true_distances_->size(), std::numeric_limits<double>::infinity());
+  }
 }
 
 Summary Simulation::run() {
@@ -95,7 +106,7 @@ Summary Simulation::run() {
     const auto begin = std::chrono::steady_clock::now();
     const Status& status = loop_.control();
     cycle_times_.push_back(elapsed_us(begin));
-    evaluate_errors();
+    evaluate_truth();
     metrics.move_limits(limits.lower(), limits.upper());
     metrics.observe(loop_.time(), loop_.position(), loop_.command(), norms_, status, cycle_times_.back());
     smoothness.observe(loop_.velocity(), errors_);
@@ -108,7 +119,7 @@ Summary Simulation::run() {
     }
   }
   loop_.control();  // at the state that the last command led to
-  evaluate_errors();
+  evaluate_truth();
   metrics.move_limits(limits.lower(), limits.upper());
   metrics.observe_end(loop_.time(), loop_.position(), norms_);
   smoothness.observe(loop_.velocity(), errors_);
@@ -116,13 +127,17 @@ Summary Simulation::run() {
   return complete(metrics.summary(), smoothness);
 }
 
-/// At the true state, which the controller may not see.
-void Simulation::evaluate_errors() {
+/// Errors and distances at the true state, which the controller may not see.
+void Simulation::evaluate_truth() {
   true_terms_.update(loop_.position(), loop_.velocity());
   for (std::size_t i = 0; i < true_tasks_.size(); ++i) {
     true_tasks_[i]->update(true_terms_, loop_.time());
     errors_[i] = true_tasks_[i]->error();
     norms_[i] = errors_[i].norm();
+  }
+  if (true_distances_) {
+    true_distances_->update(true_terms_);
+    least_distance_ = least_distance_.cwiseMin(true_distances_->distance());
   }
 }
 
@@ -137,6 +152,9 @@ Summary Simulation::complete(Summary summary, const Smoothness& smoothness) cons
   summary.velocity_variation = smoothness.velocity_variation();
   summary.sensor_error = (plant.measured_position() - plant.position()).cwiseAbs();
   summary.contacts = plant.contacts();
+  for (Eigen::Index i = 0; i < least_distance_.size(); ++i) {
+    summary.least_distance[true_distances_->names()[static_cast<std::size_t>(i)]] = least_distance_[i];
+  }
   return summary;
 }
 
@@ -151,6 +169,9 @@ void Simulation::write_row() {
   append(controller.lower_activation());
   for (const Vector& error : errors_) {
     append(error);
+  }
+  if (true_distances_) {
+    append(true_distances_->distance());
   }
   row_.push_back(controller.status().scale);
   if (const auto wheels = loop_.wheels()) {

@@ -152,7 +152,7 @@ BOOST_AUTO_TEST_CASE(inequality_rows_hold_against_any_demand) {
     const Vector room = stack.inequality * solve(stack).y - (stack.inequality_lower - slack);
     for (const double value : room) {
       BOOST_TEST(value >= 0.0);
-      pressed += value < defaults.headroom ? 1 : 0;
+      pressed += value < defaults.inequality_headroom ? 1 : 0;
     }
   });
   BOOST_TEST(pressed >= 500);
@@ -171,12 +171,12 @@ BOOST_AUTO_TEST_CASE(inequality_rows_ask_for_motion_and_yield_to_the_joints) {
   Unilateral law(stack, defaults);
   Solution solution(2);
   law.solve(stack, select_all_tasks(stack), solution);
-  const double met = (0.5 + defaults.headroom) / 2.0;
+  const double met = (0.5 + defaults.inequality_headroom) / 2.0;
   BOOST_TEST(std::abs(solution.y_limits[0] - met) <= std::pow(defaults.softness, 2) * met);
   BOOST_TEST(std::abs(solution.y_limits[1] - (1.0 - defaults.headroom)) <= 1e-10);
   // the task asks for the contrary, and gets what the headroom of its level is less than that of level 0
-  BOOST_TEST(std::abs(solution.y[0] - (solution.y_limits[0] - 0.25 * defaults.headroom)) <= 1e-10);
-  BOOST_TEST(std::abs(solution.y[1] - (solution.y_limits[1] - 0.5 * defaults.headroom)) <= 1e-10);
+  BOOST_TEST(std::abs(solution.y[0] - (solution.y_limits[0] - 0.25 * defaults.inequality_headroom)) <= 1e-10);
+  BOOST_TEST(std::abs(solution.y[1] - (solution.y_limits[1] - 0.5 * defaults.inequality_headroom)) <= 1e-10);
 }
 
 BOOST_AUTO_TEST_CASE(idle_inequality_rows_change_nothing) {
@@ -286,6 +286,7 @@ BOOST_AUTO_TEST_CASE(refuses_bad_options) {
   refuse(&Unilateral::Options::headroom, NAN, "headroom must be positive");
   refuse(&Unilateral::Options::headroom, INFINITY, "headroom must be positive");
   refuse(&Unilateral::Options::softness, 0.0, "softness must be positive");
+  refuse(&Unilateral::Options::inequality_headroom, 0.0, "inequality_headroom must be positive");
   refuse(&Unilateral::Options::fine_damping, 0.5, "fine_damping 0.500000 must not exceed damping");
 }
 

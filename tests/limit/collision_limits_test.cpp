@@ -363,9 +363,9 @@ BOOST_AUTO_TEST_CASE(names_the_pair_inside_its_margin_and_the_one_pressed) {
   scene.distance(limits, scene.q, 0.0);
   BOOST_TEST(limits.inside() == -1);
   const Vector row = limits.jacobian().row(0);
-  const Vector along = row / row.squaredNorm();          // the distance grows by 1 m/s
-  BOOST_TEST(limits.pressed_by(Vector::Zero(8)) == -1);  // slack 0.04 m/s, that of one margin
-  BOOST_TEST(limits.pressed_by(-0.001 * along) == 0);
+  const Vector along = row / row.squaredNorm();               // the distance grows by 1 m/s
+  BOOST_TEST(limits.pressed_by(-0.01 * along, 0.029) == -1);  // of 4 1/s times 1 cm, 0.03 m/s are left
+  BOOST_TEST(limits.pressed_by(-0.01 * along, 0.031) == 0);
   scene.motion.position += 0.011 * scene.motion.rotation.col(2);
   scene.distance(limits, scene.q, 0.0);
   BOOST_TEST(limits.inside() == 0);
@@ -405,7 +405,7 @@ BOOST_AUTO_TEST_CASE(never_allocates) {
             limits.update(scene.terms);
             limits.update_second_order(scene.terms);
             static_cast<void>(limits.move(0, scene.motion));
-            static_cast<void>(limits.pressed_by(scene.v));
+            static_cast<void>(limits.pressed_by(scene.v, 1.0));
           }
           BOOST_TEST(limits.motion_lower().allFinite());
           BOOST_TEST((limits.distance()[0] < 0.0) == inside);

@@ -96,11 +96,13 @@ std::vector<ReferenceLevel> reference_unilateral(const Stack& stack, const Selec
       continue;
     }
     const double headroom = options.headroom / (1.0 + level);
+    const double other_headroom = options.inequality_headroom / (1.0 + level);
     ReferenceLevel entry{
         .level = level,
         .open = open,
-        .lower = joined(stack.motion_lower, stack.inequality_lower - slack).array() + headroom,
-        .upper = joined(stack.motion_upper, Vector::Constant(slack.size(), kFar)).array() - headroom,
+        .lower = joined(stack.motion_lower.array() + headroom,
+                        (stack.inequality_lower - slack).array() + other_headroom),
+        .upper = joined(stack.motion_upper.array() - headroom, Vector::Constant(slack.size(), kFar)),
         .mu = level == 0 ? 1.0 : weight(options, level_target(stack, selection, level) - a * y),
         .a = a,
         .b = level_target(stack, selection, level),

@@ -38,6 +38,9 @@ class Unilateral final : public StackLaw {
     double lock = 0.1;           ///< sigma_lock, in units of the whitened rows
     double headroom = 0.01;      ///< eta, in units of the motion [rad/s or m/s]
     double softness = 0.01;      ///< of the inequality rows at level 0, in units of the whitened rows
+    /// eta of the inequality rows, in their units [m/s]. Larger than that of the motion: a row that a level's freedom
+    /// hardly moves turns quickly, and with it what the row leaves to the level.
+    double inequality_headroom = 0.1;
   };
 
   /// Errors: ConfigError unless all options are positive and fine_damping <= damping.

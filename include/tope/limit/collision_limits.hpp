@@ -73,8 +73,8 @@ class CollisionLimits {
   double margin() const { return margin_; }                         ///< [m]
   double gain() const { return gain_; }                             ///< [1/s]
   double servo_gain() const { return servo_gain_; }                 ///< [1/s]
-  /// Pair that a motion (nv) presses hardest: closer to its bound than a distance of one margin allows for. -1: none.
-  int pressed_by(const VectorArg& motion) const;
+  /// Pair that a motion (nv) presses hardest, of those whose bounds are nearer than `slack` [m/s or m/s2]; -1: none.
+  int pressed_by(const VectorArg& motion, double slack) const;
   /// Pair furthest inside its margin, or -1.
   int inside() const;
 
@@ -92,7 +92,6 @@ class CollisionLimits {
   Vector distance_;
   Matrix jacobian_;
   Vector motion_lower_;
-  double pressing_slack_ = 0.0;  // slack at which a row counts as pressed
 };
 
 }  // namespace tope

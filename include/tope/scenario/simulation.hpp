@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace tope {
@@ -34,7 +35,7 @@ class Simulation {
 
  private:
   void write_row();
-  void evaluate_errors();
+  void evaluate_truth();
   Summary complete(Summary summary, const Smoothness& smoothness) const;
 
   SimulationOptions options_;
@@ -45,6 +46,8 @@ class Simulation {
   std::vector<std::unique_ptr<Task>> true_tasks_;
   std::vector<Vector> errors_;  // of each task at the true state
   std::vector<double> norms_;
+  std::optional<CollisionLimits> true_distances_;
+  Vector least_distance_;
   std::vector<double> cycle_times_;
 };
 
