@@ -4,6 +4,7 @@
 #include <tope/scenario/benchmark.hpp>
 #include <tope/scenario/simulation.hpp>
 
+#include <Eigen/Geometry>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/function.h>
 #include <nanobind/stl/string_view.h>
@@ -57,6 +58,46 @@ nb::dict describe_robot(const Scenario& scenario) {
   return entry;
 }
 
+/// Type and sizes of a shape, under the names that scenario files have for them.
+nb::dict describe_shape(const Shape& shape) {
+  nb::dict entry;
+  if (const auto* sphere = std::get_if<shape::Sphere>(&shape)) {
+    entry["type"] = "sphere";
+    entry["radius"] = sphere->radius;
+  } else if (const auto* box = std::get_if<shape::Box>(&shape)) {
+    entry["type"] = "box";
+    entry["size"] = nb::cast(std::vector<double>(box->size.begin(), box->size.end()));
+  } else if (const auto* capsule = std::get_if<shape::Capsule>(&shape)) {
+    entry["type"] = "capsule";
+    entry["radius"] = capsule->radius;
+    entry["length"] = capsule->length;
+  } else if (const auto* cylinder = std::get_if<shape::Cylinder>(&shape)) {
+    entry["type"] = "cylinder";
+    entry["radius"] = cylinder->radius;
+    entry["length"] = cylinder->length;
+  } else {
+    entry["type"] = std::holds_alternative<shape::HalfSpace>(shape) ? "half_space" : "convex_hull";
+  }
+  return entry;
+}
+
+/// The bodies that the world carries.
+nb::list describe_obstacles(const CollisionOptions& collisions) {
+  nb::list obstacles;
+  for (const CollisionBody& body : collisions.geometry.bodies) {
+    if (!body.frame.empty()) {
+      continue;
+    }
+    nb::dict entry = describe_shape(body.shape);
+    const Eigen::Quaterniond turn(body.rotation);
+    entry["name"] = body.name;
+    entry["position"] = nb::cast(std::vector<double>(body.position.begin(), body.position.end()));
+    entry["quaternion"] = nb::cast(std::vector<double>{turn.w(), turn.x(), turn.y(), turn.z()});
+    obstacles.append(entry);
+  }
+  return obstacles;
+}
+
 nb::dict describe_scenario(const Scenario& scenario) {
   const JointLimits limits(*scenario.robot, scenario.controller.limits.rows);
   nb::list joints;
@@ -80,6 +121,11 @@ nb::dict describe_scenario(const Scenario& scenario) {
   entry["joints"] = joints;
   entry["tasks"] = tasks;
   entry["notices"] = nb::cast(scenario.notices);
+  if (const auto& collisions = scenario.controller.limits.collisions) {
+    const CollisionLimits distances(*scenario.robot, *collisions, limits.gain(), limits.options().servo_gain);
+    entry["distances"] = nb::cast(distances.names());
+    entry["obstacles"] = describe_obstacles(*collisions);
+  }
   return entry;
 }
 
