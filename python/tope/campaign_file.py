@@ -8,7 +8,7 @@ sample              keys of the scenario -> what each is drawn from (tope.distri
                     * in a key stands for joints: initial.*, limits.joints.arm_*.buffer. Formulas know the
                     joint's lower, upper, buffer and bound, and elsewhere all keys drawn or set before
 variants            name -> keys; every draw is run once in each
-must_keep_limits    variants that a sweep fails for if they cross a limit or touch what they keep a distance to
+must_keep_limits    variants that a sweep fails for if they cross a limit or touch what they avoid
 tables              which figures are told: limits, distances, avoidance, errors, jumps; all by default
 refine              also run at this many times shorter a cycle, to tell jumps from slopes
 chunk               runs that are done and kept as one

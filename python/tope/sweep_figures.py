@@ -184,8 +184,8 @@ def avoidance(results: Results) -> Figures:
         if np.any(np.isfinite(kept))
     ]
     note = (
-        "Counts of runs; the least distance [mm] between a sphere of the robot and a body, and so many of the "
-        "runs kept no more than this; negative: penetration."
+        "Counts of runs; the least distance [mm] between a sphere of the robot and a body, and so many of "
+        "the runs kept no more than this; negative: penetration."
     )
     return Figures("Distance kept from obstacles and itself", header, rows, note)
 
