@@ -363,18 +363,18 @@ void Controller::fill_limits(const VectorArg& q, const VectorArg& v) {
   stack_.motion_lower = limits_.motion_lower();
   stack_.motion_upper = limits_.motion_upper();
   if (collisions_) {
-    fill_collisions();
+    fill_collisions(*collisions_);
   }
 }
 
-void Controller::fill_collisions() {
+void Controller::fill_collisions(CollisionLimits& collisions) {
   if (torque_mode()) {
-    collisions_->update_second_order(terms_);
+    collisions.update_second_order(terms_);
   } else {
-    collisions_->update(terms_);
+    collisions.update(terms_);
   }
-  whitening_.rows(collisions_->jacobian(), stack_.inequality);
-  stack_.inequality_lower = collisions_->motion_lower();
+  whitening_.rows(collisions.jacobian(), stack_.inequality);
+  stack_.inequality_lower = collisions.motion_lower();
 }
 
 /// From where it is, beginning with the next update.
@@ -553,7 +553,7 @@ void Controller::report(const CommandBounds& bounds) {
     status_.add(Event::beyond);
   }
   if (collisions_) {
-    report_collisions();
+    report_collisions(*collisions_);
   }
   if (solution_.singular) {
     status_.add(Event::singular);
@@ -563,14 +563,14 @@ void Controller::report(const CommandBounds& bounds) {
   }
 }
 
-void Controller::report_collisions() {
+void Controller::report_collisions(const CollisionLimits& collisions) {
   // level 0 alone would leave every row its whole headroom
   const double headroom = options_.limits.unilateral.resolved(options_.mode).inequality_headroom;
-  status_.avoiding_pair = collisions_->pressed_by(motion_, headroom);
+  status_.avoiding_pair = collisions.pressed_by(motion_, headroom);
   if (status_.avoiding_pair >= 0) {
     status_.add(Event::avoiding);
   }
-  status_.near_pair = collisions_->inside();
+  status_.near_pair = collisions.inside();
   if (status_.near_pair >= 0) {
     status_.add(Event::too_near);
   }

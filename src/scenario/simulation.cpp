@@ -152,8 +152,10 @@ Summary Simulation::complete(Summary summary, const Smoothness& smoothness) cons
   summary.velocity_variation = smoothness.velocity_variation();
   summary.sensor_error = (plant.measured_position() - plant.position()).cwiseAbs();
   summary.contacts = plant.contacts();
-  for (Eigen::Index i = 0; i < least_distance_.size(); ++i) {
-    summary.least_distance[true_distances_->names()[static_cast<std::size_t>(i)]] = least_distance_[i];
+  if (true_distances_) {
+    for (int i = 0; i < true_distances_->size(); ++i) {
+      summary.least_distance[true_distances_->names()[static_cast<std::size_t>(i)]] = least_distance_[i];
+    }
   }
   return summary;
 }

@@ -117,7 +117,7 @@ class Controller {
   bool torque_mode() const { return options_.mode == Mode::torque; }
   void stand_still(Eigen::Ref<Vector> u) const;
   void fill_limits(const VectorArg& q, const VectorArg& v);
-  void fill_collisions();
+  void fill_collisions(CollisionLimits& collisions);
   void fill_tasks(double t);
   void observe_tasks();
   void fill_field();
@@ -126,7 +126,7 @@ class Controller {
   CommandBounds bound_velocity();
   CommandBounds bound_torque();
   void report(const CommandBounds& bounds);
-  void report_collisions();
+  void report_collisions(const CollisionLimits& collisions);
 
   Robot robot_;
   ControllerOptions options_;
