@@ -1,4 +1,5 @@
 #include "bindings.hpp"
+#include "numbers.hpp"
 #include "task_spec.hpp"
 
 #include <tope/common/error.hpp>
@@ -47,15 +48,19 @@ void bind_options(nb::module_& module) {
       .def(
           "__init__",
           [](UnilateralOptions* self, OptionalNumber damping, OptionalNumber fine_damping,
-             OptionalNumber fine_below, OptionalNumber lock, OptionalNumber headroom) {
+             OptionalNumber fine_below, OptionalNumber lock, OptionalNumber headroom,
+             OptionalNumber inequality_headroom, OptionalNumber softness) {
             new (self) UnilateralOptions{.damping = damping,
                                          .fine_damping = fine_damping,
                                          .fine_below = fine_below,
                                          .lock = lock,
-                                         .headroom = headroom};
+                                         .headroom = headroom,
+                                         .inequality_headroom = inequality_headroom,
+                                         .softness = softness};
           },
           nb::kw_only(), "damping"_a = nb::none(), "fine_damping"_a = nb::none(), "fine_below"_a = nb::none(),
-          "lock"_a = nb::none(), "headroom"_a = nb::none(), "What is None is chosen for the mode.");
+          "lock"_a = nb::none(), "headroom"_a = nb::none(), "inequality_headroom"_a = nb::none(),
+          "softness"_a = nb::none(), "What is None is chosen for the mode.");
   nb::class_<PotentialFieldOptions>(module, "PotentialFieldOptions",
                                     "Parameters of the method `potential_field`.")
       .def(
@@ -73,7 +78,8 @@ void bind_options(nb::module_& module) {
              const std::string& ramp, const std::map<std::string, double>& buffers,
              const std::map<std::string, double>& gains, OptionalNumber servo_gain, OptionalNumber lambda_p,
              OptionalNumber lambda_v, const std::string& measure, const UnilateralOptions& unilateral,
-             const PotentialFieldOptions& potential_field, bool enforce_conditions) {
+             const PotentialFieldOptions& potential_field, const std::optional<CollisionOptions>& collisions,
+             bool enforce_conditions) {
             new (self) LimitOptions{
                 .method = limit_method_from(method),
                 .rows = {.buffer = buffer,
@@ -85,6 +91,7 @@ void bind_options(nb::module_& module) {
                          .margin = margin},
                 .unilateral = unilateral,
                 .potential_field = potential_field,
+                .collisions = collisions,
                 .enforce_conditions = enforce_conditions};
             set_servo(self->rows, gain, servo_gain, lambda_p, lambda_v);
           },
@@ -94,7 +101,8 @@ void bind_options(nb::module_& module) {
           "buffers"_a = std::map<std::string, double>{}, "gains"_a = std::map<std::string, double>{},
           "servo_gain"_a = nb::none(), "lambda_p"_a = nb::none(), "lambda_v"_a = nb::none(),
           "measure"_a = "predicted", "unilateral"_a = UnilateralOptions{},
-          "potential_field"_a = PotentialFieldOptions{}, "enforce_conditions"_a = true);
+          "potential_field"_a = PotentialFieldOptions{}, "collisions"_a = nb::none(),
+          "enforce_conditions"_a = true);
 }
 
 void bind_status(nb::module_& module) {
@@ -125,6 +133,16 @@ std::map<std::string, double> named_activations(const Controller& controller) {
     const std::string& joint = controller.robot().joint_names()[static_cast<std::size_t>(j)];
     named[joint + ".upper"] = controller.upper_activation()[j];
     named[joint + ".lower"] = controller.lower_activation()[j];
+  }
+  return named;
+}
+
+std::map<std::string, double> named_distances(const Controller& controller) {
+  std::map<std::string, double> named;
+  if (const CollisionLimits* collisions = controller.collisions()) {
+    for (int i = 0; i < collisions->size(); ++i) {
+      named[collisions->names()[static_cast<std::size_t>(i)]] = collisions->distance()[i];
+    }
   }
   return named;
 }
@@ -199,6 +217,27 @@ void bind_controller(nb::module_& module) {
           "Moves a joint's limits [rad or m] from the next update on; the rates [rad/s or m/s] say how they "
           "go on.")
       .def(
+          "move_obstacle",
+          [](Controller& controller, const std::string& body, const nb::object& position,
+             const nb::object& rotation, const nb::object& velocity, const nb::object& angular_velocity) {
+            const CollisionLimits* collisions = controller.collisions();
+            if (collisions == nullptr) {
+              throw ConfigError("move_obstacle: the controller keeps no distances");
+            }
+            const BodyMotion motion{.position = three_numbers(position, "position"),
+                                    .rotation = rotation_from(rotation, "rotation"),
+                                    .velocity = three_numbers(velocity, "velocity"),
+                                    .angular_velocity = three_numbers(angular_velocity, "angular_velocity")};
+            if (!controller.move_obstacle(collisions->body_index(body), motion)) {
+              throw ConfigError("move_obstacle: " + body +
+                                ": only a body that the world carries can be moved, by finite numbers and a "
+                                "rotation");
+            }
+          },
+          "body"_a, nb::kw_only(), "position"_a, "rotation"_a = unit_quaternion(),
+          "velocity"_a = nb::make_tuple(0.0, 0.0, 0.0), "angular_velocity"_a = nb::make_tuple(0.0, 0.0, 0.0),
+          "Moves an obstacle [m] from the next update on; its velocities [m/s, rad/s] say how it goes on.")
+      .def(
           "update",
           [](Controller& controller, const Vector& q, const Vector& v, double t) {
             Vector u = Vector::Zero(controller.robot().nv());
@@ -219,10 +258,10 @@ void bind_controller(nb::module_& module) {
       .def_prop_ro(
           "limit_gains", [](const Controller& controller) { return controller.limits().gains(); },
           "Gain of each joint's limits (nv) [1/s]: as given, or as chosen for the mode and its drive.")
-      .def_prop_ro(
-          "status_text",
-          [](const Controller& controller) { return describe(controller.status(), controller.robot()); })
-      .def_prop_ro("activations", &named_activations, "How active each limit is, 0 to 1, by 'joint.side'.");
+      .def_prop_ro("status_text", &Controller::status_text)
+      .def_prop_ro("activations", &named_activations, "How active each limit is, 0 to 1, by 'joint.side'.")
+      .def_prop_ro("distances", &named_distances,
+                   "Distance [m] of each pair that is kept apart, by 'sphere.body', as of the last update.");
 }
 
 }  // namespace tope::python

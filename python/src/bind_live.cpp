@@ -74,10 +74,7 @@ void bind_live(nb::module_& module) {
       .def_prop_ro("status",
                    [](const LiveSimulation& live) { return event_names(live.loop().controller().status()); })
       .def_prop_ro("status_text",
-                   [](const LiveSimulation& live) {
-                     const Controller& controller = live.loop().controller();
-                     return describe(controller.status(), controller.robot());
-                   })
+                   [](const LiveSimulation& live) { return live.loop().controller().status_text(); })
       .def_prop_ro(
           "limit_gain",
           [](const LiveSimulation& live) { return live.loop().controller().limits().least_gain(); },

@@ -4,11 +4,14 @@
 #include <tope/scenario/benchmark.hpp>
 #include <tope/scenario/simulation.hpp>
 
+#include <Eigen/Geometry>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/function.h>
 #include <nanobind/stl/string_view.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -59,6 +62,46 @@ nb::dict describe_robot(const Scenario& scenario) {
   return entry;
 }
 
+/// Type and sizes of a shape, under the names that scenario files have for them.
+nb::dict describe_shape(const Shape& shape) {
+  nb::dict entry;
+  if (const auto* sphere = std::get_if<shape::Sphere>(&shape)) {
+    entry["type"] = "sphere";
+    entry["radius"] = sphere->radius;
+  } else if (const auto* box = std::get_if<shape::Box>(&shape)) {
+    entry["type"] = "box";
+    entry["size"] = nb::cast(std::vector<double>(box->size.begin(), box->size.end()));
+  } else if (const auto* capsule = std::get_if<shape::Capsule>(&shape)) {
+    entry["type"] = "capsule";
+    entry["radius"] = capsule->radius;
+    entry["length"] = capsule->length;
+  } else if (const auto* cylinder = std::get_if<shape::Cylinder>(&shape)) {
+    entry["type"] = "cylinder";
+    entry["radius"] = cylinder->radius;
+    entry["length"] = cylinder->length;
+  } else {
+    entry["type"] = std::holds_alternative<shape::HalfSpace>(shape) ? "half_space" : "convex_hull";
+  }
+  return entry;
+}
+
+/// The bodies that the world carries.
+nb::list describe_obstacles(const CollisionOptions& collisions) {
+  nb::list obstacles;
+  for (const CollisionBody& body : collisions.geometry.bodies) {
+    if (!body.frame.empty()) {
+      continue;
+    }
+    nb::dict entry = describe_shape(body.shape);
+    const Eigen::Quaterniond turn(body.rotation);
+    entry["name"] = body.name;
+    entry["position"] = nb::cast(std::vector<double>(body.position.begin(), body.position.end()));
+    entry["quaternion"] = nb::cast(std::vector<double>{turn.w(), turn.x(), turn.y(), turn.z()});
+    obstacles.append(entry);
+  }
+  return obstacles;
+}
+
 nb::dict describe_scenario(const Scenario& scenario) {
   const JointLimits limits(*scenario.robot, scenario.controller.limits.rows);
   nb::list joints;
@@ -82,6 +125,11 @@ nb::dict describe_scenario(const Scenario& scenario) {
   entry["joints"] = joints;
   entry["tasks"] = tasks;
   entry["notices"] = nb::cast(scenario.notices);
+  if (const auto& collisions = scenario.controller.limits.collisions) {
+    const CollisionLimits distances(*scenario.robot, *collisions, limits.least_gain(), limits.options().servo_gain);
+    entry["distances"] = nb::cast(distances.names());
+    entry["obstacles"] = describe_obstacles(*collisions);
+  }
   return entry;
 }
 
@@ -97,6 +145,18 @@ nb::dict by_joint(const Robot& robot, const Vector& values, const Vector& scale)
     overall = std::max(overall, values[j] / scale[j]);
   }
   entry["overall"] = finite_or_none(overall);
+  return entry;
+}
+
+/// {pair: distance, "overall": the least}.
+nb::dict by_pair(const std::map<std::string, double>& distances) {
+  nb::dict entry;
+  double overall = std::numeric_limits<double>::infinity();
+  for (const auto& [pair, distance] : distances) {
+    entry[pair.c_str()] = distance;
+    overall = std::min(overall, distance);
+  }
+  entry["overall"] = overall;
   return entry;
 }
 
@@ -125,6 +185,9 @@ nb::dict describe_summary(const Scenario& scenario, const Summary& summary) {
   entry["velocity_variation"] = by_joint(robot, summary.velocity_variation, robot.velocity_limit());
   entry["sensor_error"] = by_joint(robot, summary.sensor_error, ones);
   entry["contacts"] = nb::cast(summary.contacts);
+  if (!summary.least_distance.empty()) {
+    entry["least_distance"] = by_pair(summary.least_distance);
+  }
   entry["buffer_time"] = by_joint(robot, summary.buffer_time, ones);
   entry["task_error"] = errors;
   entry["time_to_goal"] = optional_number(summary.time_to_goal);

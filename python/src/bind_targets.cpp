@@ -3,9 +3,6 @@
 #include <tope/reference/target_stream.hpp>
 #include <tope/reference/waypoints.hpp>
 
-#include <Eigen/Geometry>
-
-#include <cmath>
 #include <functional>
 #include <vector>
 
@@ -14,21 +11,6 @@ using namespace nb::literals;
 
 namespace tope::python {
 namespace {
-
-/// A 3 x 3 matrix, or a quaternion w, x, y, z.
-Matrix3 rotation_from(const nb::handle& target) {
-  const nb::object numbers = numbers_from(target);
-  Matrix3 matrix;
-  if (nb::try_cast<Matrix3>(numbers, matrix)) {
-    return matrix;
-  }
-  const auto wxyz = numbers_from<Eigen::Vector4d>(numbers, "target",
-                                                  "a 3 x 3 rotation matrix or a quaternion (w, x, y, z)");
-  if (std::abs(wxyz.norm() - 1.0) > 1e-2) {
-    throw ConfigError("target: not a rotation: the norm of the quaternion is " + std::to_string(wxyz.norm()));
-  }
-  return Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized().toRotationMatrix();
-}
 
 Vector3 point_at(const nb::handle& target) {
   return numbers_from<Vector3>(target, "target", "a point of three numbers [m]");
@@ -98,7 +80,8 @@ void bind_streams(nb::module_& module) {
       .def(
           "__init__",
           [](RotationStream* self, const nb::object& start, double rate, double hold) {
-            new (self) RotationStream(rotation_from(start), StreamOptions{.rate = rate, .hold = hold});
+            new (self)
+                RotationStream(rotation_from(start, "target"), StreamOptions{.rate = rate, .hold = hold});
           },
           "start"_a, nb::kw_only(), "rate"_a = usual.rate, "hold"_a = usual.hold,
           "Rests at `start` until the first sample.")
@@ -107,7 +90,7 @@ void bind_streams(nb::module_& module) {
           [](RotationStream& self, double time, const nb::object& rotation,
              const nb::object& angular_velocity) {
             return self.put({.time = time,
-                             .rotation = rotation_from(rotation),
+                             .rotation = rotation_from(rotation, "target"),
                              .angular_velocity = point_at(angular_velocity)});
           },
           "time"_a, "rotation"_a, "angular_velocity"_a = nb::make_tuple(0.0, 0.0, 0.0),
@@ -118,10 +101,6 @@ void bind_streams(nb::module_& module) {
 }
 
 }  // namespace
-
-nb::object numbers_from(const nb::handle& values) {
-  return nb::module_::import_("numpy").attr("asarray")(values, "dtype"_a = "float64");
-}
 
 Target<PointTarget> point_from(const nb::object& target) {
   if (Target<PointTarget> path{PointTarget{}}; nb::try_cast(target, path)) {
@@ -147,11 +126,12 @@ Target<RotationTarget> rotating_from(const nb::object& target) {
     return nb::cast<const RotationStream&>(target).target();
   }
   if (PyCallable_Check(target.ptr()) == 0) {
-    return RotationTarget{.rotation = rotation_from(target)};
+    return RotationTarget{.rotation = rotation_from(target, "target")};
   }
   return moving_target<RotationTarget>([target](double t) {
     const nb::tuple sample = nb::cast<nb::tuple>(target(t));
-    return RotationTarget{.rotation = rotation_from(sample[0]), .angular_velocity = point_at(sample[1])};
+    return RotationTarget{.rotation = rotation_from(sample[0], "target"),
+                          .angular_velocity = point_at(sample[1])};
   });
 }
 
@@ -179,7 +159,10 @@ void bind_targets(nb::module_& module) {
       .def(
           "__init__",
           [](Rotations* self, const std::vector<double>& times, const nb::sequence& rotations) {
-            new (self) Rotations(through(waypoints_from<RotationWaypoint>(times, rotations, rotation_from)));
+            new (self) Rotations(
+                through(waypoints_from<RotationWaypoint>(times, rotations, [](const nb::handle& rotation) {
+                  return rotation_from(rotation, "target");
+                })));
           },
           "times"_a, "rotations"_a,
           "Times [s] that rise, and a rotation for each, a matrix or a quaternion (w, x, y, z); at rest "

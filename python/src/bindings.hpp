@@ -16,6 +16,7 @@ namespace tope::python {
 void bind_robot(nanobind::module_& module);
 void bind_targets(nanobind::module_& module);
 void bind_tasks(nanobind::module_& module);
+void bind_collisions(nanobind::module_& module);
 void bind_controller(nanobind::module_& module);
 void bind_simulation(nanobind::module_& module);
 void bind_live(nanobind::module_& module);

@@ -36,6 +36,7 @@ NB_MODULE(_core, module) {
   tope::python::bind_robot(module);
   tope::python::bind_targets(module);
   tope::python::bind_tasks(module);
+  tope::python::bind_collisions(module);
   tope::python::bind_controller(module);
   tope::python::bind_simulation(module);
   tope::python::bind_live(module);

@@ -187,10 +187,65 @@ def JointPosition(*, target: Mapping[str, float], reference: Exponential | Prede
 def Damping() -> Task:
     """Brings every joint to rest, as far as higher levels leave it free."""
 
+class Sphere:
+    """A ball [m]."""
+
+    def __init__(self, *, radius: float) -> None: ...
+
+class Box:
+    """A box, with its full lengths along x, y, z [m]."""
+
+    def __init__(self, *, size: object) -> None: ...
+
+class Capsule:
+    """All within a radius of a segment of a length along z [m]."""
+
+    def __init__(self, *, radius: float, length: float) -> None: ...
+
+class Cylinder:
+    """A cylinder along z [m]."""
+
+    def __init__(self, *, radius: float, length: float) -> None: ...
+
+class HalfSpace:
+    """All points with z <= 0: a floor or a wall."""
+
+    def __init__(self) -> None: ...
+
+class ConvexHull:
+    """The convex hull of points [m]."""
+
+    def __init__(self, *, points: object) -> None: ...
+
+    @staticmethod
+    def of_mesh(file: str | os.PathLike) -> ConvexHull:
+        """Of the vertices of a mesh file, in metres."""
+
+class CollisionSphere:
+    """A ball that covers part of the robot."""
+
+    def __init__(self, name: str, *, frame: str, center: object, radius: float) -> None: ...
+
+class CollisionBody:
+    """
+    A convex body that spheres keep clear of: an obstacle, or a part of the robot.
+    """
+
+    def __init__(self, name: str, shape: Sphere | Box | Capsule | Cylinder | HalfSpace | ConvexHull, *, position: object = (0.0, 0.0, 0.0), rotation: object = (1.0, 0.0, 0.0, 0.0), frame: str = '') -> None:
+        """Without a frame the world carries it."""
+
+class CollisionOptions:
+    """Distances to keep."""
+
+    def __init__(self, *, bodies: Sequence[CollisionBody] = [], spheres: Sequence[CollisionSphere] = [], exclude: Sequence[tuple[str, str]] = [], margin: float = 0.01, gain: float | None = None, servo_gain: float | None = None) -> None:
+        """
+        Beside the robot's own spheres and bodies; `exclude` has (sphere or frame, body) pairs.
+        """
+
 class UnilateralOptions:
     """Parameters of the method `unilateral`."""
 
-    def __init__(self, *, damping: float | None = None, fine_damping: float | None = None, fine_below: float | None = None, lock: float | None = None, headroom: float | None = None) -> None:
+    def __init__(self, *, damping: float | None = None, fine_damping: float | None = None, fine_below: float | None = None, lock: float | None = None, headroom: float | None = None, inequality_headroom: float | None = None, softness: float | None = None) -> None:
         """What is None is chosen for the mode."""
 
 class PotentialFieldOptions:
@@ -201,7 +256,7 @@ class PotentialFieldOptions:
 class LimitOptions:
     """How joint limits are met."""
 
-    def __init__(self, *, method: str = 'unilateral', buffer: float = 0.1, gain: float | None = None, margin: float = 0.001, ramp: str = 'raised_cosine', buffers: Mapping[str, float] = {}, servo_gain: float | None = None, lambda_p: float | None = None, lambda_v: float | None = None, measure: str = 'predicted', unilateral: UnilateralOptions = ..., potential_field: PotentialFieldOptions = ..., enforce_conditions: bool = True) -> None: ...
+    def __init__(self, *, method: str = 'unilateral', buffer: float = 0.1, gain: float | None = None, margin: float = 0.001, ramp: str = 'raised_cosine', buffers: Mapping[str, float] = {}, gains: Mapping[str, float] = {}, servo_gain: float | None = None, lambda_p: float | None = None, lambda_v: float | None = None, measure: str = 'predicted', unilateral: UnilateralOptions = ..., potential_field: PotentialFieldOptions = ..., collisions: CollisionOptions | None = None, enforce_conditions: bool = True) -> None: ...
 
 class Status:
     """What acted in one cycle."""
@@ -226,7 +281,7 @@ class TaskHandle:
 class Controller:
     """Serves tasks in strict order of priority and keeps joint limits."""
 
-    def __init__(self, robot: Robot, *, mode: str, dt: float, limits: LimitOptions = ..., joint_weights: Sequence[float] = [], null_space: str = 'compensated', wheel_distribution: str = 'minimum_norm') -> None:
+    def __init__(self, robot: Robot, *, mode: str, dt: float, limits: LimitOptions = ..., joint_weights: Sequence[float] = [], null_space: str = 'compensated', midpoint: bool = True, wheel_distribution: str = 'minimum_norm') -> None:
         """Takes a copy of the robot with its bounds as they are."""
 
     def add(self, task: Task, *, level: int, over: float = 0.0) -> TaskHandle:
@@ -250,6 +305,11 @@ class Controller:
         Moves a joint's limits [rad or m] from the next update on; the rates [rad/s or m/s] say how they go on.
         """
 
+    def move_obstacle(self, body: str, *, position: object, rotation: object = (1.0, 0.0, 0.0, 0.0), velocity: object = (0.0, 0.0, 0.0), angular_velocity: object = (0.0, 0.0, 0.0)) -> None:
+        """
+        Moves an obstacle [m] from the next update on; its velocities [m/s, rad/s] say how it goes on.
+        """
+
     def update(self, q: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], v: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], t: float) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]:
         """One cycle: the command (nv) at state q (nq), v (nv) and time t [s]."""
 
@@ -260,9 +320,9 @@ class Controller:
     def status(self) -> Status: ...
 
     @property
-    def limit_gain(self) -> float:
+    def limit_gains(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]:
         """
-        Gain of the limits [1/s]: as given, or as chosen for the mode and the drives.
+        Gain of each joint's limits (nv) [1/s]: as given, or as chosen for the mode and its drive.
         """
 
     @property
@@ -271,6 +331,12 @@ class Controller:
     @property
     def activations(self) -> dict[str, float]:
         """How active each limit is, 0 to 1, by 'joint.side'."""
+
+    @property
+    def distances(self) -> dict[str, float]:
+        """
+        Distance [m] of each pair that is kept apart, by 'sphere.body', as of the last update.
+        """
 
 LIMIT_METHODS: tuple = ...
 
@@ -346,7 +412,7 @@ class LiveSimulation:
     @property
     def limit_gain(self) -> float:
         """
-        The gain that limits are kept with [1/s], chosen by the controller if the scenario does not say.
+        The least gain of the joints' limits [1/s], chosen by the controller if the scenario does not say.
         """
 
     @property

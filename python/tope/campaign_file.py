@@ -8,8 +8,8 @@ sample              keys of the scenario -> what each is drawn from (tope.distri
                     * in a key stands for joints: initial.*, limits.joints.arm_*.buffer. Formulas know the
                     joint's lower, upper, buffer and bound, and elsewhere all keys drawn or set before
 variants            name -> keys; every draw is run once in each
-must_keep_limits    variants that a sweep fails for if they cross a limit
-tables              which figures are told: limits, distances, errors, jumps; all by default
+must_keep_limits    variants that a sweep fails for if they cross a limit or touch what they avoid
+tables              which figures are told: limits, distances, avoidance, errors, jumps; all by default
 refine              also run at this many times shorter a cycle, to tell jumps from slopes
 chunk               runs that are done and kept as one
 """
@@ -35,7 +35,7 @@ KNOWN = (
     *("name", "description", "seed", "runs", "scenario", "set", "let", "sample", "variants"),
     *("must_keep_limits", "tables", "refine", "chunk"),
 )
-TABLES = ("limits", "distances", "errors", "jumps")
+TABLES = ("limits", "distances", "avoidance", "errors", "jumps")
 ALONE = "all"  # the variant of a campaign that names none
 CHUNK = 100
 FILE, BUILD = "file ", "the build of tope"  # what content is called

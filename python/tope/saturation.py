@@ -21,6 +21,8 @@ FLAGS = {  # those that limits and scale do not tell
     "clipped": "The limits alone asked for more than a bound, and were clipped",
     "singular": "A task direction was nearly lost, and damped",
     "beyond": "A joint was beyond its limit, and led back",
+    "avoiding": "A distance to an obstacle or the robot itself shaped the command",
+    "too_near": "A distance was below its margin, and led back",
     "held": "A task with a promised time was held back, so that the promise was void",
     "near_flip": "An orientation error was near half a turn, where its direction flips",
     "cut_off": "The solver was cut off: limits held, tasks were served less well",

@@ -10,11 +10,12 @@ import numpy as np
 
 from tope.panels import Array, float32
 from tope.runs import Run
-from tope.urdf import Joint, RobotTree, quaternions, robot_tree, rotations
+from tope.urdf import Colour, Joint, RobotTree, Visual, quaternions, robot_tree, rotations
 
 RATE = 100.0  # frames of the replay in a second, at most
 MOST_FRAMES = 3001  # of one run, so that the page of a long run stays small
 KERB = (0.05, 1.1, 0.045)  # depth, width and height of an obstacle on the floor [m]
+OBSTACLE: Colour = (0.75, 0.25, 0.2)
 STILL = 1e-6  # a goal that moves less is sent once [m, 1]
 
 
@@ -81,9 +82,10 @@ def scene(runs: Mapping[str, Run]) -> dict[str, Any] | None:
     if not alike or any(len(run.time) == 0 for run in runs.values()):
         return None
     tree = robot_tree(first["robot"])
+    bodies = [shape for obstacle in first.get("obstacles", ()) for shape in obstacle_shapes(obstacle)]
     return {
         "joints": [joint["name"] for joint in first["joints"]],
-        "links": [link_data(tree, link) for link in tree.links],
+        "links": [link_data(tree, link, bodies if link == tree.root else ()) for link in tree.links],
         "tree": [joint_data(joint, first["robot"]["locked_joints"]) for joint in tree.joints],
         "meshes": tree.meshes,
         "obstacles": list(obstacles(tree, first["joints"])),
@@ -126,8 +128,29 @@ def once_if_still(rows: Array) -> Array:
     return rows[:1] if np.all(np.abs(rows - rows[0]) < STILL) else rows
 
 
-def link_data(tree: RobotTree, link: str) -> dict[str, Any]:
-    """A link and its shapes."""
+def obstacle_shapes(obstacle: Mapping[str, Any]) -> Iterator[Visual]:
+    """What shows an obstacle; nothing for a half-space or a convex hull."""
+    w, x, y, z = obstacle["quaternion"]
+    angle = 2 * np.arctan2(np.linalg.norm((x, y, z)), w)
+    axis = np.array((x, y, z)) / max(float(np.linalg.norm((x, y, z))), 1e-12)
+    placement = np.eye(4)
+    placement[:3, :3] = rotations((angle * axis)[None])[0]
+    placement[:3, 3] = obstacle["position"]
+    if obstacle["type"] == "box":
+        yield Visual("box", tuple(obstacle["size"]), placement, OBSTACLE)
+    if obstacle["type"] == "sphere":
+        yield Visual("sphere", (obstacle["radius"],), placement, OBSTACLE)
+    if obstacle["type"] in ("cylinder", "capsule"):
+        yield Visual("cylinder", (obstacle["radius"], obstacle["length"]), placement, OBSTACLE)
+    if obstacle["type"] == "capsule":
+        for end in (-0.5, 0.5):
+            tip = placement.copy()
+            tip[:3, 3] += end * obstacle["length"] * placement[:3, 2]
+            yield Visual("sphere", (obstacle["radius"],), tip, OBSTACLE)
+
+
+def link_data(tree: RobotTree, link: str, more: Sequence[Visual] = ()) -> dict[str, Any]:
+    """A link, its shapes, and more that it carries."""
     visuals = [
         {
             "shape": visual.shape,
@@ -135,7 +158,7 @@ def link_data(tree: RobotTree, link: str) -> dict[str, Any]:
             **placement_data(visual.link_T_shape),
             "colour": visual.colour,
         }
-        for visual in tree.visuals.get(link, ())
+        for visual in (*tree.visuals.get(link, ()), *more)
     ]
     return {"name": link, "visuals": visuals}
 

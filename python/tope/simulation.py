@@ -68,6 +68,7 @@ def promised_columns(scenario: Mapping[str, Any]) -> Iterator[str]:
         yield from (f"xi.{joint['name']}.{side}" for side in ("upper", "lower"))
     for task in scenario["tasks"]:
         yield from (f"e.{task['name']}.{i}" for i in range(task["size"]))
+    yield from (f"d.{pair}" for pair in scenario.get("distances", ()))
     yield "scale"
 
 

@@ -80,8 +80,9 @@ class Results:
         return [name for name in dict.fromkeys(names) if name != "damping"]
 
     def crossed(self, variant: str) -> int:
-        """How many runs of a variant crossed a limit."""
-        return int(np.sum(violation(self.of(variant)) > 0))
+        """How many runs of a variant crossed a limit, or touched what they keep a distance to."""
+        done = self.of(variant)
+        return int(np.sum((violation(done) > 0) | (least_distance(done) <= 0)))
 
 
 def values(table: pa.Table, name: str) -> Array:
@@ -100,9 +101,22 @@ def violation(table: pa.Table) -> Array:
     return np.asarray(np.fmax(coarse, table.column("fine.max_limit_violation").to_numpy().astype(float)))
 
 
+def least_distance(table: pa.Table) -> Array:
+    """The least distance of each run [m], as `violation` finds it; infinite where none is kept."""
+    names = [name for name in ("least_distance", "fine.least_distance") if name in table.column_names]
+    found = [table.column(name).to_numpy().astype(float) for name in names]
+    return np.asarray(np.fmin.reduce([*found, np.full(len(table), np.inf)]))
+
+
 def all_figures(results: Results) -> list[Figures]:
     """Every table."""
-    makers = {"limits": limits, "distances": distances, "errors": errors, "jumps": jumps}
+    makers = {
+        "limits": limits,
+        "distances": distances,
+        "avoidance": avoidance,
+        "errors": errors,
+        "jumps": jumps,
+    }
     tables = [makers[name](results) for name in results.campaign.tables]
     return [each for each in tables if each.rows]
 
@@ -152,6 +166,33 @@ def distances(results: Results) -> Figures:
     ]
     note = "In mm or mrad. So many of the runs kept no more than this; negative: crossed by."
     return Figures("Distance kept from the nearest limit", header, rows, note)
+
+
+def avoidance(results: Results) -> Figures:
+    """Were distances kept?"""
+    header = ("variant", "avoided something", "touched something", "least", "0.1 %", "1 %", "10 %", "median")
+    rows = [
+        [
+            variant,
+            count(np.sum(values(done, "cycles.avoiding") > 0)),
+            count(np.sum(kept <= 0)),
+            *(millimetres(each) for each in np.quantile(kept, QUANTILES[: len(header) - 3])),
+        ]
+        for variant in results.campaign.variants
+        for done in [results.of(variant)]
+        for kept in [least_distance(done)]
+        if np.any(np.isfinite(kept))
+    ]
+    note = (
+        "Counts of runs; the least distance [mm] between a sphere of the robot and a body, and so many of "
+        "the runs kept no more than this; negative: penetration."
+    )
+    return Figures("Distance kept from obstacles and itself", header, rows, note)
+
+
+def millimetres(value: float) -> str:
+    """A length [m] in mm."""
+    return f"{1e3 * value:.3g}"
 
 
 def errors(results: Results) -> Figures:

@@ -23,11 +23,11 @@ Row = dict[str, Any]
 
 FLAGS = (
     *("ok", "limit", "scaled", "clipped", "singular"),
-    *("beyond", "held", "near_flip", "cut_off", "bad_input"),
+    *("beyond", "avoiding", "too_near", "held", "near_flip", "cut_off", "bad_input"),
 )
 FIRST = {"run": pa.int64(), "sample": pa.int64(), "variant": pa.string()}
 OUTCOME = {"outcome": pa.string(), "message": pa.string()}
-TEXTS = {"nearest_joint": pa.string(), "jump_joint": pa.string()}
+TEXTS = {name: pa.string() for name in ("nearest_joint", "jump_joint", "nearest_pair")}
 COUNTS = {name: pa.int64() for name in ("cycles", *(f"cycles.{flag}" for flag in FLAGS))}
 KINDS = {"number": pa.float64(), "text": pa.string()}
 ROW_GROUP = 65_536
@@ -104,7 +104,17 @@ def metrics(summary: Summary) -> Row:
         },
         **{f"max_limit_violation.{name}": each for name, each in violation.items() if name != "overall"},
         **{f"max_command_jump.{name}": each for name, each in jump.items() if name != "overall"},
+        **clearance(summary),
     }
+
+
+def clearance(summary: Summary) -> Row:
+    """The least distance, and of which pair, where distances are kept."""
+    if "least_distance" not in summary:
+        return {}
+    pairs = {pair: each for pair, each in summary["least_distance"].items() if pair != "overall"}
+    nearest = min(pairs, key=lambda pair: pairs[pair])
+    return {"nearest_pair": nearest, "least_distance": pairs[nearest]}
 
 
 def refined(summary: Summary, fine: Summary) -> Row:
@@ -113,6 +123,7 @@ def refined(summary: Summary, fine: Summary) -> Row:
     return {
         "fine.max_limit_violation": fine["max_limit_violation"]["overall"],
         "fine.max_command_jump": fine_jump,
+        **({"fine.least_distance": fine["least_distance"]["overall"]} if "least_distance" in fine else {}),
         "jump_ratio": coarse_jump / fine_jump if coarse_jump is not None and fine_jump else None,
     }
 

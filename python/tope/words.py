@@ -51,6 +51,7 @@ def summary_rows(summary: Summary) -> list[tuple[str, str]]:
             if task["name"] in summary["task_error"]
         ),
         ("Joint limits", limits(summary)),
+        *([("Distances", clearance(summary))] if "least_distance" in summary else ()),
         *(experiment_rows(summary) if summary["scenario"].get("plant") == "mujoco" else ()),
         ("Largest jump", jump(summary)),
         ("Cycles", cycles(summary)),
@@ -168,6 +169,14 @@ def limits(summary: Summary) -> str:
     if violation > 0:
         return f"crossed by {number(violation, units[joint])} ({joint})"
     return f"kept, {number(0.0 - violation, units[joint])} away ({joint})"
+
+
+def clearance(summary: Summary) -> str:
+    """The pair of a sphere and a body that came closest, with its distance."""
+    pairs = {pair: each for pair, each in summary["least_distance"].items() if pair != "overall"}
+    nearest = min(pairs, key=lambda pair: pairs[pair])
+    distance = number(abs(pairs[nearest]), "m")
+    return f"{distance} kept ({nearest})" if pairs[nearest] > 0 else f"penetration by {distance} ({nearest})"
 
 
 def jump(summary: Summary) -> str:

@@ -2,6 +2,8 @@
 
 #include <tope/common/names.hpp>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -246,6 +248,16 @@ Vector YamlReader::vector(const std::string& key, int size) const {
     values[static_cast<Eigen::Index>(i)] = value;
   }
   return values;
+}
+
+/// Quaternions are given in a few digits and normalised; one that is not nearly of unit length is a mistake.
+Matrix3 YamlReader::rotation(const std::string& key) const {
+  const Vector wxyz = vector(key, 4);
+  if (std::abs(wxyz.norm() - 1.0) > 1e-2) {
+    fail(key, "not a rotation: its norm is " + std::to_string(wxyz.norm()) +
+                  "; expected a unit quaternion [w, x, y, z]");
+  }
+  return Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized().toRotationMatrix();
 }
 
 std::vector<std::string> YamlReader::texts(const std::string& key) const {

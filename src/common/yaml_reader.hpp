@@ -46,6 +46,8 @@ class YamlReader {
   std::string text(const std::string& key, const std::string& fallback) const;
   /// Numbers of a list; size < 0 takes any length.
   Vector vector(const std::string& key, int size) const;
+  /// The rotation of a quaternion [w, x, y, z].
+  Matrix3 rotation(const std::string& key) const;
   std::vector<std::string> texts(const std::string& key) const;
   /// All entries of a map of numbers, in the order of the file.
   std::vector<std::pair<std::string, double>> numbers(const std::string& key) const;

@@ -96,6 +96,19 @@ JointLimitOptions with_gain(const Robot& robot, const ControllerOptions& options
   return rows;
 }
 
+/// The distances to keep, if any. Gains that are left open are those of the joints.
+std::optional<CollisionLimits> make_collisions(const Robot& robot, const LimitOptions& options,
+                                               const JointLimits& joints) {
+  if (!options.collisions) {
+    return std::nullopt;
+  }
+  if (options.method != LimitMethod::unilateral) {
+    throw ConfigError("collisions: the limit method '" + to_string(options.method) +
+                      "' keeps no distances; use 'unilateral'");
+  }
+  return CollisionLimits(robot, *options.collisions, joints.least_gain(), options.rows.servo_gain);
+}
+
 }  // namespace
 
 Controller::Controller(const Robot& robot, const ControllerOptions& options)
@@ -104,9 +117,10 @@ Controller::Controller(const Robot& robot, const ControllerOptions& options)
       terms_(robot_),
       authority_(torque_mode() ? braking_authority(robot_) : Vector()),
       limits_(robot_, with_gain(robot_, options_, authority_)),
+      collisions_(make_collisions(robot_, options_.limits, limits_)),
       whitening_(torque_mode() ? Whitening::torque(robot_.nv())
                                : Whitening::velocity(command_weight(robot_, options_.joint_weights))),
-      stack_(robot_.nv()),
+      stack_(robot_.nv(), collisions_ ? collisions_->size() : 0),
       law_(stack_, law_options()),
       solution_(robot_.nv()),
       command_(Vector::Zero(robot_.nv())),
@@ -151,8 +165,15 @@ void Controller::share_headroom() {
 std::vector<Condition> Controller::conditions() const {
   const LimitMethod method = options_.limits.method;
   const Vector headroom = options_.limits.unilateral.resolved(options_.mode).headroom * stack_.headroom_share;
-  return torque_mode() ? torque_conditions(robot_, limits_, method, headroom, options_.dt, authority_)
-                       : velocity_conditions(robot_, limits_, method, headroom, options_.dt);
+  std::vector<Condition> conditions =
+      torque_mode() ? torque_conditions(robot_, limits_, method, headroom, options_.dt, authority_)
+                    : velocity_conditions(robot_, limits_, method, headroom, options_.dt);
+  if (collisions_) {
+    const std::vector<Condition> more = torque_mode() ? torque_conditions(*collisions_, limits_, options_.dt)
+                                                      : velocity_conditions(*collisions_, options_.dt);
+    conditions.insert(conditions.end(), more.begin(), more.end());
+  }
+  return conditions;
 }
 
 TaskHandle Controller::add(int level, const Task& task, const TransitionOptions& options) {
@@ -366,6 +387,19 @@ void Controller::fill_limits(const VectorArg& q, const VectorArg& v) {
   stack_.limit_target = limits_.target();
   stack_.motion_lower = limits_.motion_lower();
   stack_.motion_upper = limits_.motion_upper();
+  if (collisions_) {
+    fill_collisions(*collisions_);
+  }
+}
+
+void Controller::fill_collisions(CollisionLimits& collisions) {
+  if (torque_mode()) {
+    collisions.update_second_order(terms_);
+  } else {
+    collisions.update(terms_);
+  }
+  whitening_.rows(collisions.jacobian(), stack_.inequality);
+  stack_.inequality_lower = collisions.motion_lower();
 }
 
 /// From where it is, beginning with the next update.
@@ -472,6 +506,7 @@ void Controller::leave_bias_to_tasks() {
   stack_.limit_target += limit_motion_;
   stack_.motion_lower += limit_motion_;
   stack_.motion_upper += limit_motion_;
+  stack_.inequality_lower.noalias() += stack_.inequality * bias_y_;
 }
 
 void Controller::to_motion(const Vector& y, Vector& motion) const {
@@ -542,12 +577,32 @@ void Controller::report(const CommandBounds& bounds) {
   if (status_.beyond_joint >= 0) {
     status_.add(Event::beyond);
   }
+  if (collisions_) {
+    report_collisions(*collisions_);
+  }
   if (solution_.singular) {
     status_.add(Event::singular);
   }
   if (solution_.cut_off) {
     status_.add(Event::cut_off);
   }
+}
+
+void Controller::report_collisions(const CollisionLimits& collisions) {
+  // level 0 alone would leave every row its whole headroom
+  const double headroom = options_.limits.unilateral.resolved(options_.mode).inequality_headroom;
+  status_.avoiding_pair = collisions.pressed_by(motion_, headroom);
+  if (status_.avoiding_pair >= 0) {
+    status_.add(Event::avoiding);
+  }
+  status_.near_pair = collisions.inside();
+  if (status_.near_pair >= 0) {
+    status_.add(Event::too_near);
+  }
+}
+
+std::string Controller::status_text() const {
+  return collisions_ ? describe(status_, robot_, collisions_->names()) : describe(status_, robot_);
 }
 
 }  // namespace tope

@@ -9,7 +9,13 @@ std::string joint_name(const Robot& robot, int joint) {
   return joint < 0 ? "a joint" : robot.joint_names()[static_cast<std::size_t>(joint)];
 }
 
-std::string sentence(Event event, const Status& status, const Robot& robot) {
+std::string pair_name(const std::vector<std::string>& pairs, int pair) {
+  return pair < 0 || pair >= static_cast<int>(pairs.size()) ? "a pair"
+                                                            : pairs[static_cast<std::size_t>(pair)];
+}
+
+std::string sentence(Event event, const Status& status, const Robot& robot,
+                     const std::vector<std::string>& pairs) {
   std::ostringstream text;
   switch (event) {
     case Event::limit:
@@ -28,6 +34,13 @@ std::string sentence(Event event, const Status& status, const Robot& robot) {
       break;
     case Event::beyond:
       text << joint_name(robot, status.beyond_joint) << " is beyond its limit and is led back.";
+      break;
+    case Event::avoiding:
+      text << "The distance of " << pair_name(pairs, status.avoiding_pair) << " shapes the command.";
+      break;
+    case Event::too_near:
+      text << "The distance of " << pair_name(pairs, status.near_pair)
+           << " is below its margin; it is led back.";
       break;
     case Event::held:
       text << "A limit, a bound or a higher level holds back a task with a predefined time, which does not "
@@ -50,7 +63,8 @@ std::string sentence(Event event, const Status& status, const Robot& robot) {
 
 std::string_view to_string(Event event) {
   constexpr std::array<std::string_view, all_events.size()> names{
-      "limit", "scaled", "clipped", "singular", "beyond", "held", "near_flip", "cut_off", "bad_input"};
+      "limit",    "scaled", "clipped",   "singular", "beyond",   "avoiding",
+      "too_near", "held",   "near_flip", "cut_off",  "bad_input"};
   return names[static_cast<std::size_t>(event)];
 }
 
@@ -65,11 +79,11 @@ std::string event_names(const Status& status) {
   return names.empty() ? "ok" : names;
 }
 
-std::string describe(const Status& status, const Robot& robot) {
+std::string describe(const Status& status, const Robot& robot, const std::vector<std::string>& pairs) {
   std::string text;
   for (const Event event : all_events) {
     if (status.has(event)) {
-      text += (text.empty() ? "" : " ") + sentence(event, status, robot);
+      text += (text.empty() ? "" : " ") + sentence(event, status, robot, pairs);
     }
   }
   return text.empty() ? "ok" : text;

@@ -61,9 +61,7 @@ bool BoundedLeastSquares::solve(const PanelMatrix& a, const Vector& r, double mu
       break;
     }
     if (settle(lower, upper, active)) {
-      for (std::size_t i = 0; i < held_.size(); ++i) {
-        multipliers_[held_[i]] = held_multiplier_[static_cast<Eigen::Index>(i)];
-      }
+      note_multipliers();
       return true;
     }
   }
@@ -174,6 +172,15 @@ bool BoundedLeastSquares::settle(const Vector& lower, const Vector& upper, Activ
   return settled;
 }
 
+void BoundedLeastSquares::note_multipliers() {
+  multipliers_.setZero();
+  for (std::size_t i = 0; i < held_.size(); ++i) {
+    multipliers_[held_[i]] = held_multiplier_[static_cast<Eigen::Index>(i)];
+  }
+}
+
+/// The dual method may pass rows that nearly depend on each other on its way, and its steps there are long: the active
+/// rows that it ends with are held afresh, without what has gathered in rounding.
 bool BoundedLeastSquares::fall_back(const PanelMatrix& a, const Vector& r, double mu, const PanelMatrix& d,
                                     const Vector& lower, const Vector& upper, ActiveRows& active) {
   multiply_columns(a, hessian_);
@@ -181,14 +188,25 @@ bool BoundedLeastSquares::fall_back(const PanelMatrix& a, const Vector& r, doubl
   d.copy_to(padded_d_.leftCols(unknowns_));
   padded_d_.rightCols(padded_d_.cols() - unknowns_).setZero();
   const bool solved = dual_.solve(hessian_, in_z_, mu, padded_d_, lower, upper);
+  multipliers_ = dual_.multipliers();
+  mark_pressed(active);
+  gather(active);
+  if (solved && hold(a, mu, d, lower, upper) && settle(lower, upper, active)) {
+    note_multipliers();
+    return true;
+  }
+  mark_pressed(active);
   z_.head(unknowns_) = dual_.z().head(unknowns_);
   multiply(d, z_.data(), row_value_.data());
-  multipliers_ = dual_.multipliers();
+  return solved;
+}
+
+/// The rows that have a multiplier.
+void BoundedLeastSquares::mark_pressed(ActiveRows& active) const {
   for (std::size_t i = 0; i < active.size(); ++i) {
     const double multiplier = multipliers_[static_cast<Eigen::Index>(i)];
     active[i] = static_cast<signed char>((multiplier > 0.0) - (multiplier < 0.0));
   }
-  return solved;
 }
 
 }  // namespace tope

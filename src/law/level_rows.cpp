@@ -24,7 +24,7 @@ std::size_t LevelRows::gather(const Stack& stack, const Selection& selection, st
       continue;
     }
     const TaskRows& task = stack.tasks[i];
-    is_motion_ = task.is_motion && tasks == 1;
+    is_motion_ = task.is_motion && tasks == 1 && stack.inequality_lower.size() == 0;
     if (!is_motion_) {
       a_.set_rows(rows, task.is_motion ? stack.motion : task.a);
     }

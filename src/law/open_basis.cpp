@@ -5,12 +5,12 @@
 
 namespace tope {
 
-OpenBasis::OpenBasis(int n)
+OpenBasis::OpenBasis(int n, int image_rows)
     : open_(n, n),
-      image_(n, n),
+      image_(image_rows, n),
       rows_(n, n),
       reflectors_(Matrix::Zero(PanelMatrix::padded(n), n)),
-      along_(reflectors_),
+      along_(Matrix::Zero(PanelMatrix::padded(image_rows), n)),
       triangle_(n, n),
       shares_(n) {
   reset();

@@ -4,13 +4,15 @@
 
 namespace tope {
 
-Stack::Stack(int n)
+Stack::Stack(int n, int inequalities)
     : motion(Matrix::Identity(n, n)),
       limit_activation(Vector::Zero(n)),
       limit_target(Vector::Zero(n)),
       motion_lower(Vector::Zero(n)),
       motion_upper(Vector::Zero(n)),
-      headroom_share(Vector::Ones(n)) {}
+      headroom_share(Vector::Ones(n)),
+      inequality(Matrix::Zero(inequalities, n)),
+      inequality_lower(Vector::Zero(inequalities)) {}
 
 int Stack::max_level_rows() const {
   int largest = 0;

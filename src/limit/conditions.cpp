@@ -14,14 +14,15 @@ std::string text(const Parts&... parts) {
   return stream.str();
 }
 
-Condition servo_is_stable(const JointLimits& limits, double dt) {
-  return {.name = "limit servo within one period",
+/// `what` names the limits: "limit" or "distance"; `key` is where their gains are set.
+Condition servo_is_stable(const std::string& what, const std::string& key, double gain, double dt) {
+  return {.name = what + " servo within one period",
           .joint = "",
           .expression = "dt * gain <= 1",
-          .value = dt * limits.largest_gain(),
+          .value = dt * gain,
           .bound = 1.0,
-          .advice = text("lower limits.gain to at most ", 1.0 / dt, " 1/s or dt to at most ",
-                         1.0 / limits.largest_gain(), " s")};
+          .advice =
+              text("lower ", key, ".gain to at most ", 1.0 / dt, " 1/s or dt to at most ", 1.0 / gain, " s")};
 }
 
 /// A joint at full speed must not cross its buffer between two samples; kappa is the ramp's steepness.
@@ -61,14 +62,15 @@ Condition headroom_fits(const Robot& robot, const JointLimits& limits, int joint
           .advice = text("lower limits.unilateral.headroom to at most ", 0.5 * width)};
 }
 
-Condition second_order_servo_is_stable(const JointLimits& limits, double dt) {
-  const double c = 1.0 + 0.5 * limits.largest_gain() * dt;
-  return {.name = "limit servo within one period",
+Condition second_order_servo_is_stable(const std::string& what, const std::string& key, double gain,
+                                       double servo_gain, double dt) {
+  const double c = 1.0 + 0.5 * gain * dt;
+  return {.name = what + " servo within one period",
           .joint = "",
           .expression = "dt * (1 + gain dt / 2) * servo_gain <= 1",
-          .value = dt * c * limits.options().servo_gain,
+          .value = dt * c * servo_gain,
           .bound = 1.0,
-          .advice = text("lower limits.servo_gain to at most ", 1.0 / (c * dt), " 1/s")};
+          .advice = text("lower ", key, ".servo_gain to at most ", 1.0 / (c * dt), " 1/s")};
 }
 
 constexpr double kRowsApart = 0.9;  // of v_max
@@ -191,7 +193,7 @@ std::vector<Condition> velocity_conditions(const Robot& robot, const JointLimits
   if (method == LimitMethod::none) {
     return conditions;
   }
-  conditions.push_back(servo_is_stable(limits, dt));
+  conditions.push_back(servo_is_stable("limit", "limits", limits.largest_gain(), dt));
   // a switched or literal row is complete from the buffer's edge on, and needs no more than one period's
   // travel
   const bool blended = method == LimitMethod::chain || method == LimitMethod::multilinear ||
@@ -214,7 +216,8 @@ std::vector<Condition> torque_conditions(const Robot& robot, const JointLimits& 
   if (method == LimitMethod::none) {
     return conditions;
   }
-  conditions.push_back(second_order_servo_is_stable(limits, dt));
+  conditions.push_back(second_order_servo_is_stable("limit", "limits", limits.largest_gain(),
+                                                    limits.options().servo_gain, dt));
   if (method == LimitMethod::unilateral) {
     conditions.push_back(servo_keeps_up(limits));
   }
@@ -231,6 +234,24 @@ std::vector<Condition> torque_conditions(const Robot& robot, const JointLimits& 
     conditions.push_back(drive_can_brake(robot, limits, method, joint, authority[joint]));
   }
   return conditions;
+}
+
+std::vector<Condition> velocity_conditions(const CollisionLimits& collisions, double dt) {
+  return {servo_is_stable("distance", "collisions", collisions.gain(), dt)};
+}
+
+/// All joints that slow down at their limits' gain slow every approach down at that gain, which is what their drives are
+/// known to manage; a distance must not ask for more.
+std::vector<Condition> torque_conditions(const CollisionLimits& collisions, const JointLimits& limits,
+                                         double dt) {
+  return {
+      second_order_servo_is_stable("distance", "collisions", collisions.gain(), collisions.servo_gain(), dt),
+      {.name = "drives strong enough for the distances",
+       .joint = "",
+       .expression = "collisions.gain <= limits.gain",
+       .value = collisions.gain(),
+       .bound = limits.least_gain(),
+       .advice = text("lower collisions.gain to at most ", limits.least_gain(), " 1/s")}};
 }
 
 }  // namespace tope

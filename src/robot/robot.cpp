@@ -145,12 +145,24 @@ void Robot::apply(const RobotConfig& config, const std::string& where) {
       shared->model.armature[wheels.joints[static_cast<std::size_t>(i)]] += inertia[i];
     }
   }
+  collisions_ = config.collisions;
   model_ = std::move(shared);
 }
 
 int Robot::joint_index(const std::string& name) const { return index_of(name, joint_names_, "joint"); }
 
 int Robot::frame_index(const std::string& name) const { return index_of(name, frame_names_, "frame"); }
+
+bool Robot::fixed_in_world(int frame) const {
+  return model_->model.frames[static_cast<std::size_t>(frame)].parentJoint == 0;
+}
+
+bool Robot::neighbours(int frame, int other) const {
+  const pinocchio::Model& model = model_->model;
+  const pinocchio::JointIndex one = model.frames[static_cast<std::size_t>(frame)].parentJoint;
+  const pinocchio::JointIndex two = model.frames[static_cast<std::size_t>(other)].parentJoint;
+  return one == two || model.parents[one] == two || model.parents[two] == one;
+}
 
 void Robot::set_position_limits(const Vector& lower, const Vector& upper) {
   check_position_limits(lower, upper, joint_names_);

@@ -1,4 +1,5 @@
 #include "../common/yaml_reader.hpp"
+#include "collision_reader.hpp"
 
 #include <tope/common/names.hpp>
 #include <tope/robot/robot.hpp>
@@ -80,6 +81,10 @@ RobotConfig RobotConfig::from_yaml(const std::filesystem::path& file) {
   }
   if (const auto base = yaml.optional_map("base")) {
     config.base = read_moving_base(*base);
+  }
+  if (const auto collisions = yaml.optional_map("collisions")) {
+    config.collisions = read_collision_geometry(*collisions, "bodies");
+    collisions->finish();
   }
   yaml.finish();
   return config;

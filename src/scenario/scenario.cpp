@@ -1,4 +1,5 @@
 #include "../common/yaml_reader.hpp"
+#include "../robot/collision_reader.hpp"
 #include "change_reader.hpp"
 #include "mujoco_reader.hpp"
 #include "task_reader.hpp"
@@ -116,6 +117,8 @@ LimitOptions read_limits(const YamlReader& yaml, Robot& robot, std::vector<Movin
     limits.unilateral.fine_below = positive_if_given(*law, "fine_below");
     limits.unilateral.lock = positive_if_given(*law, "lock");
     limits.unilateral.headroom = positive_if_given(*law, "headroom");
+    limits.unilateral.inequality_headroom = positive_if_given(*law, "inequality_headroom");
+    limits.unilateral.softness = positive_if_given(*law, "softness");
     law->finish();
   }
   if (const auto field = yaml.optional_map("potential_field")) {
@@ -128,6 +131,18 @@ LimitOptions read_limits(const YamlReader& yaml, Robot& robot, std::vector<Movin
   }
   yaml.finish();
   return limits;
+}
+
+/// `collisions`: distances to keep between the robot's spheres and obstacles, beside those of the robot's own file.
+CollisionOptions read_collisions(const YamlReader& yaml, const Robot& robot) {
+  CollisionOptions options;
+  options.geometry = read_collision_geometry(yaml, "obstacles");
+  options.margin = yaml.positive("margin", options.margin);
+  options.gain = positive_if_given(yaml, "gain");
+  options.servo_gain = positive_if_given(yaml, "servo_gain");
+  yaml.finish();
+  const CollisionLimits checked(robot, options, JointLimits::default_gain, JointLimitOptions{}.servo_gain);
+  return options;
 }
 
 Hierarchy::Options read_singularities(const YamlReader& yaml) {
@@ -357,6 +372,10 @@ Scenario Scenario::load(const std::filesystem::path& file,
   Robot robot = read_robot(yaml.map("robot"), scenario);
   if (const auto limits = yaml.optional_map("limits")) {
     scenario.controller.limits = read_limits(*limits, robot, scenario.moving_limits);
+  }
+  if (const auto collisions = yaml.optional_map("collisions")) {
+    scenario.controller.limits.collisions =
+        located(yaml, "collisions", [&] { return read_collisions(*collisions, robot); });
   }
   if (const auto singularities = yaml.optional_map("singularities")) {
     scenario.controller.singularities = read_singularities(*singularities);

@@ -17,7 +17,7 @@ bool changes(const Scenario& scenario, std::size_t task) {
                      [task](const TaskChange& change) { return change.task == task; });
 }
 
-std::vector<std::string> log_columns(const Scenario& scenario) {
+std::vector<std::string> log_columns(const Scenario& scenario, const CollisionLimits* distances) {
   std::vector<std::string> columns{"t"};
   const std::vector<std::string>& joints = scenario.robot->joint_names();
   for (const char* quantity : {"q.", "v.", "u."}) {
@@ -38,6 +38,11 @@ std::vector<std::string> log_columns(const Scenario& scenario) {
   for (std::size_t i = 0; i < scenario.tasks.size(); ++i) {
     if (changes(scenario, i)) {
       columns.push_back("a." + scenario.tasks[i].name);
+    }
+  }
+  if (distances) {
+    for (const std::string& pair : distances->names()) {
+      columns.push_back("d." + pair);
     }
   }
   columns.emplace_back("scale");
@@ -85,13 +90,18 @@ double elapsed_us(std::chrono::steady_clock::time_point begin) {
 Simulation::Simulation(const Scenario& scenario, const SimulationOptions& options)
     : options_(options),
       loop_(scenario),
-      log_(log_columns(scenario), options.log_file, options.keep_log),
+      log_(log_columns(scenario, loop_.controller().collisions()), options.log_file, options.keep_log),
       true_terms_(*scenario.robot) {
   true_tasks_.resize(scenario.tasks.size());
   true_of_.resize(scenario.tasks.size());
   row_.reserve(log_.columns().size());
   errors_.resize(scenario.tasks.size());
   norms_.resize(scenario.tasks.size());
+  if (const auto& collisions = scenario.controller.limits.collisions) {
+    true_distances_.emplace(*scenario.robot, *collisions, JointLimits::default_gain,
+                            JointLimitOptions{}.servo_gain);
+    least_distance_ = Vector::Constant(true_distances_->size(), std::numeric_limits<double>::infinity());
+  }
 }
 
 Summary Simulation::run() {
@@ -108,7 +118,7 @@ Summary Simulation::run() {
     const auto begin = std::chrono::steady_clock::now();
     const Status& status = loop_.control();
     cycle_times_.push_back(elapsed_us(begin));
-    evaluate_errors();
+    evaluate_truth();
     metrics.move_limits(limits.lower(), limits.upper());
     metrics.observe(loop_.time(), loop_.position(), loop_.command(), norms_, status, cycle_times_.back());
     smoothness.observe(loop_.velocity(), errors_);
@@ -121,7 +131,7 @@ Summary Simulation::run() {
     }
   }
   loop_.control();  // at the state that the last command led to
-  evaluate_errors();
+  evaluate_truth();
   metrics.move_limits(limits.lower(), limits.upper());
   metrics.observe_end(loop_.time(), loop_.position(), norms_);
   smoothness.observe(loop_.velocity(), errors_);
@@ -129,8 +139,8 @@ Summary Simulation::run() {
   return complete(metrics.summary(), smoothness);
 }
 
-/// At the true state, which the controller may not see.
-void Simulation::evaluate_errors() {
+/// Errors and distances at the true state, which the controller may not see.
+void Simulation::evaluate_truth() {
   true_terms_.update(loop_.position(), loop_.velocity());
   for (std::size_t i = 0; i < true_tasks_.size(); ++i) {
     if (const auto& task = loop_.scenario().tasks[i].task; task != true_of_[i]) {  // a change replaced it
@@ -140,6 +150,10 @@ void Simulation::evaluate_errors() {
     true_tasks_[i]->update(true_terms_, loop_.time());
     errors_[i] = true_tasks_[i]->error();
     norms_[i] = errors_[i].norm();
+  }
+  if (true_distances_) {
+    true_distances_->update(true_terms_);
+    least_distance_ = least_distance_.cwiseMin(true_distances_->distance());
   }
 }
 
@@ -155,6 +169,11 @@ Summary Simulation::complete(Summary summary, const Smoothness& smoothness) cons
   summary.velocity_variation = smoothness.velocity_variation();
   summary.sensor_error = (plant.measured_position() - plant.position()).cwiseAbs();
   summary.contacts = plant.contacts();
+  if (true_distances_) {
+    for (int i = 0; i < true_distances_->size(); ++i) {
+      summary.least_distance[true_distances_->names()[static_cast<std::size_t>(i)]] = least_distance_[i];
+    }
+  }
   return summary;
 }
 
@@ -174,6 +193,9 @@ void Simulation::write_row() {
     if (changes(loop_.scenario(), i)) {
       row_.push_back(loop_.activation(i));
     }
+  }
+  if (true_distances_) {
+    append(true_distances_->distance());
   }
   row_.push_back(controller.status().scale);
   if (const auto wheels = loop_.wheels()) {

@@ -86,25 +86,15 @@ Target<PointTarget> read_point_target(const YamlReader& yaml) {
   return point;
 }
 
-/// Quaternions are given in a few digits and normalised; one that is not nearly of unit length is a mistake.
-Matrix3 read_quaternion(const YamlReader& yaml) {
-  const Vector wxyz = yaml.vector("quaternion", 4);
-  if (std::abs(wxyz.norm() - 1.0) > 1e-2) {
-    yaml.fail("quaternion", "not a rotation: its norm is " + std::to_string(wxyz.norm()) +
-                                "; expected a unit quaternion [w, x, y, z]");
-  }
-  return Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized().toRotationMatrix();
-}
-
 Target<RotationTarget> read_rotation(const YamlReader& yaml) {
   if (yaml.has("waypoints")) {
     std::vector<RotationWaypoint> waypoints;
     for (const YamlReader& item : yaml.list_of_maps("waypoints")) {
-      waypoints.push_back({item.number("at"), read_quaternion(item)});
+      waypoints.push_back({item.number("at"), item.rotation("quaternion")});
     }
     return located(yaml, "waypoints", [&] { return through(waypoints); });
   }
-  const Matrix3 rotation = read_quaternion(yaml);
+  const Matrix3 rotation = yaml.rotation("quaternion");
   if (yaml.has("angular_velocity")) {
     return spinning(rotation, yaml.vector("angular_velocity", 3));
   }

@@ -72,7 +72,8 @@ BOOST_AUTO_TEST_CASE(no_method_allocates) {
                                                   .levels = 3,
                                                   .limit_transitions = seed % 3,
                                                   .task_transitions = seed % 2,
-                                                  .beyond = true});
+                                                  .beyond = true,
+                                                  .inequalities = seed % 3 * n});
         Law law(stack, {.method = limit_method_from(name)});
         Solution solution(n);
         {

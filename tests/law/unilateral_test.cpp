@@ -1,5 +1,5 @@
 // Unilateral: the optimality conditions of every level and a dense reference with eiquadprog on random
-// stacks; bounds, priority, the level of the limits alone, continuity. Not here: its behaviour in closed loop
+// stacks, half of them with inequality rows; bounds, priority, the level of the limits alone, continuity. Not here: its behaviour in closed loop
 // (controller room).
 #include "support/kkt.hpp"
 #include "support/path.hpp"
@@ -13,6 +13,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace tope::test {
 namespace {
@@ -38,12 +39,25 @@ void on_random_stacks(int seeds, Check check) {
       options.levels = random.integer(1, 4);
       options.beyond = random.chance(0.3);
       options.weak = 0.2;
+      options.inequalities = random.chance(0.5) ? random.integer(1, 2 * options.n) : 0;
       check(random_stack(random, options));
     }
   }
 }
 
-double infinity_norm(const Vector& v) { return v.lpNorm<Eigen::Infinity>(); }
+double infinity_norm(const Vector& v) { return v.size() > 0 ? v.lpNorm<Eigen::Infinity>() : 0.0; }
+
+/// Level 0 as its definition says: y over s / softness.
+KktResidual limit_level_residual(const Stack& stack, const ReferenceLevel& level, const Vector& y) {
+  const Eigen::Index n = stack.size();
+  const Eigen::Index p = stack.inequality.rows();
+  Matrix rows = Matrix::Zero(n + p, n + p);
+  rows.leftCols(n) = bounded_rows(stack);
+  rows.bottomRightCorner(p, p).diagonal().setConstant(defaults.softness);
+  Vector both(n + p);
+  both << y, (level.lower.tail(p) - stack.inequality * y).cwiseMax(0.0) / defaults.softness;
+  return kkt_residual(Matrix(0, n + p), Vector(0), 1.0, rows, level.lower, level.upper, both, 1e-8);
+}
 
 }  // namespace
 
@@ -74,10 +88,12 @@ BOOST_AUTO_TEST_CASE(every_level_is_optimal) {
       open.setThreshold(1e-9);
       const Vector z = open.compute(level.open).solve(y - above);
       BOOST_TEST(infinity_norm(level.open * z - (y - above)) <= 1e-9);
-      const Vector now = stack.motion * above;
-      const KktResidual kkt =
-          kkt_residual(level.a * level.open, level.b - level.a * above, level.mu, stack.motion * level.open,
-                       level.lower - now, level.upper - now, z, 1e-8);
+      const Matrix bounded = bounded_rows(stack);
+      const Vector now = bounded * above;
+      const KktResidual kkt = level.level == 0 ? limit_level_residual(stack, level, y)
+                                               : kkt_residual(level.a * level.open, level.b - level.a * above,
+                                                              level.mu, bounded * level.open,
+                                                              level.lower - now, level.upper - now, z, 1e-8);
       BOOST_TEST(kkt.feasibility <= 1e-8);
       BOOST_TEST(kkt.stationarity <= 1e-8);
       worst.feasibility = std::max(worst.feasibility, kkt.feasibility);
@@ -121,6 +137,61 @@ BOOST_AUTO_TEST_CASE(bounds_hold_against_any_demand) {
     BOOST_TEST(!solution.cut_off);
     BOOST_TEST((motion - stack.motion_upper).maxCoeff() <= 0.0);
     BOOST_TEST((stack.motion_lower - motion).maxCoeff() <= 0.0);
+  });
+}
+
+/// Every row is kept as far as level 0 keeps it, whatever the tasks ask.
+BOOST_AUTO_TEST_CASE(inequality_rows_hold_against_any_demand) {
+  int pressed = 0;
+  on_random_stacks(200, [&](Stack stack) {
+    const Selection none(stack);
+    const Vector slack = reference_unilateral(stack, none, defaults).front().slack;
+    for (TaskRows& task : stack.tasks) {
+      task.b *= 1e3;
+    }
+    const Vector room = stack.inequality * solve(stack).y - (stack.inequality_lower - slack);
+    for (const double value : room) {
+      BOOST_TEST(value >= 0.0);
+      pressed += value < defaults.inequality_headroom ? 1 : 0;
+    }
+  });
+  BOOST_TEST(pressed >= 500);
+  BOOST_TEST_MESSAGE(pressed << " rows pressed");
+}
+
+/// Two joints: a row that the joints can meet, one that they cannot, one that nothing moves.
+BOOST_AUTO_TEST_CASE(inequality_rows_ask_for_motion_and_yield_to_the_joints) {
+  Stack stack(2, 3);
+  stack.motion_lower.setConstant(-1.0);
+  stack.motion_upper.setConstant(1.0);
+  stack.inequality << 2.0, 0.0, 0.0, 1.0, 0.0, 0.0;
+  stack.inequality_lower << 0.5, 3.0, 4.0;
+  stack.tasks.push_back(
+      {.level = 1, .activation = 1.0, .a = Matrix::Identity(2, 2), .b = Vector::Constant(2, -9.0)});
+  Unilateral law(stack, defaults);
+  Solution solution(2);
+  law.solve(stack, select_all_tasks(stack), solution);
+  const double met = (0.5 + defaults.inequality_headroom) / 2.0;
+  BOOST_TEST(std::abs(solution.y_limits[0] - met) <= std::pow(defaults.softness, 2) * met);
+  BOOST_TEST(std::abs(solution.y_limits[1] - (1.0 - defaults.headroom)) <= 1e-10);
+  // the task asks for the contrary, and gets what the headroom of its level is less than that of level 0
+  BOOST_TEST(std::abs(solution.y[0] - (solution.y_limits[0] - 0.25 * defaults.inequality_headroom)) <= 1e-10);
+  BOOST_TEST(std::abs(solution.y[1] - (solution.y_limits[1] - 0.5 * defaults.inequality_headroom)) <= 1e-10);
+}
+
+BOOST_AUTO_TEST_CASE(idle_inequality_rows_change_nothing) {
+  on_random_stacks(50, [](const Stack& stack) {
+    Stack idle(stack.size(), 3);
+    idle.motion = stack.motion;
+    idle.motion_lower = stack.motion_lower;
+    idle.motion_upper = stack.motion_upper;
+    idle.tasks = stack.tasks;
+    idle.inequality.setOnes();
+    idle.inequality_lower.setConstant(-1e3);
+    Stack bare = idle;
+    bare.inequality.resize(0, stack.size());
+    bare.inequality_lower.resize(0);
+    BOOST_TEST(infinity_norm(solve(idle).y - solve(bare).y) <= 1e-9);
   });
 }
 
@@ -191,6 +262,16 @@ BOOST_AUTO_TEST_CASE(is_continuous_along_smooth_paths) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(is_continuous_along_smooth_paths_with_inequality_rows) {
+  for (int seed = 0; seed < 50; ++seed) {
+    BOOST_TEST_CONTEXT("seed " << seed) {
+      Random random(seed);
+      const StackPath path(random, 6, seed % 2 == 0, 4);
+      check_continuity([&](double s) { return solve(path.at(s)).y; });
+    }
+  }
+}
+
 BOOST_AUTO_TEST_CASE(refuses_bad_options) {
   const Stack stack(2);
   const auto refuse = [&](double Unilateral::Options::* member, double value, const std::string& name) {
@@ -204,6 +285,8 @@ BOOST_AUTO_TEST_CASE(refuses_bad_options) {
   refuse(&Unilateral::Options::lock, -0.1, "lock must be positive");
   refuse(&Unilateral::Options::headroom, NAN, "headroom must be positive");
   refuse(&Unilateral::Options::headroom, INFINITY, "headroom must be positive");
+  refuse(&Unilateral::Options::softness, 0.0, "softness must be positive");
+  refuse(&Unilateral::Options::inequality_headroom, 0.0, "inequality_headroom must be positive");
   refuse(&Unilateral::Options::fine_damping, 0.5, "fine_damping 0.500000 must not exceed damping");
 }
 

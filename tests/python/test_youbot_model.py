@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pinocchio as pin
 import pytest
+import yaml
 
 SEED = 4711
 FOLDER = Path(__file__).resolve().parents[2] / "robots" / "youbot"
@@ -86,44 +87,8 @@ def inertials():
 
 @pytest.fixture(scope="module")
 def config():
-    """The YAML's content; reads only the small part of YAML that the file uses."""
-    return read_plain_yaml((FOLDER / "youbot.yaml").read_text(encoding="utf-8"))
-
-
-def read_plain_yaml(text):
-    """Read scalars, maps of scalars in braces, and maps one level down by two spaces."""
-
-    def scalar(word):
-        try:
-            return float(word)
-        except ValueError:
-            return word
-
-    def value(words):
-        if not words.startswith("{"):
-            return scalar(words)
-        assert words.endswith("}"), words
-        pairs = (pair.split(":") for pair in words[1:-1].split(","))
-        return {key.strip(): scalar(word.strip()) for key, word in pairs}
-
-    content = {}
-    inner = content
-    for raw in text.splitlines():
-        line = raw.split("#")[0].rstrip()
-        if not line:
-            continue
-        indent = len(line) - len(line.lstrip())
-        assert indent in {0, 2}, raw
-        key, words = (part.strip() for part in line.split(":", 1))
-        if indent == 0:
-            inner = content
-        assert key not in inner, f"{key} is given twice"
-        if words:
-            inner[key] = value(words)
-        else:
-            assert indent == 0, raw
-            inner = content[key] = {}
-    return content
+    """The YAML's content."""
+    return yaml.safe_load((FOLDER / "youbot.yaml").read_text(encoding="utf-8"))
 
 
 def random_positions(rng):
@@ -293,7 +258,7 @@ def test_stretched_arm_needs_more_than_ros_allows(model):
 
 
 def test_configuration_has_the_schemas_keys(config):
-    assert set(config) == {"name", "locked_joints", "rotor_inertia", "mecanum_base"}
+    assert set(config) == {"name", "locked_joints", "rotor_inertia", "mecanum_base", "collisions"}
     assert config["name"] == "youbot"
     assert config["locked_joints"] == {"gripper_finger_joint_l": 0.0, "gripper_finger_joint_r": 0.0}
     assert list(config["rotor_inertia"]) == ARM

@@ -76,7 +76,7 @@ Matrix StackPath::Curve::at(double s) const {
   return centre + std::sin(2.0 * std::numbers::pi * frequency * s + phase) * amplitude;
 }
 
-StackPath::StackPath(Random& random, int n, bool rank_changing)
+StackPath::StackPath(Random& random, int n, bool rank_changing, int inequalities)
     : n_(n),
       rank_changing_(rank_changing),
       motion_(random.positive_definite(n, 0.5, 2.0).llt().matrixL()),
@@ -87,10 +87,12 @@ StackPath::StackPath(Random& random, int n, bool rank_changing)
     a_.push_back(curve(random, rows, n, 1.0 / std::sqrt(n)));
     b_.push_back(curve(random, rows, 1, 0.5));
   }
+  inequality_ = curve(random, inequalities, n, 1.0 / std::sqrt(n));
+  inequality_lower_ = curve(random, inequalities, 1, 0.3);
 }
 
 Stack StackPath::at(double s) const {
-  Stack stack(n_);
+  Stack stack(n_, static_cast<int>(inequality_.centre.rows()));
   stack.motion = motion_;
   const Vector activation = (0.5 + activation_.at(s).array()).min(1.0).max(0.0).matrix();
   stack.limit_activation = activation.head(n_);
@@ -98,6 +100,12 @@ Stack StackPath::at(double s) const {
   const Matrix room = room_.at(s);
   stack.motion_upper = 0.1 + room.col(0).array().square();
   stack.motion_lower = -0.1 - room.col(1).array().square();
+  stack.inequality = inequality_.at(s);
+  stack.inequality_lower = inequality_lower_.at(s).array() - 0.2;
+  if (stack.inequality_lower.size() > 1) {  // they point against each other at s = 0.5
+    stack.inequality.row(1) = -stack.inequality.row(0) + 4.0 * (s - 0.5) * stack.inequality.row(1);
+    stack.inequality_lower.head(2).array() += 0.3;
+  }
   for (std::size_t i = 0; i < a_.size(); ++i) {
     stack.tasks.push_back({.level = static_cast<int>(i) + 1,
                            .activation = activation[n_ + static_cast<int>(i)],

@@ -21,10 +21,10 @@ void check_continuity(const std::function<Vector(double)>& f);
 
 /// A random smooth path s -> stack, s in [0, 1], of constant shape. Activations run through 0, 1 and ties. On
 /// a rank-changing path rows of one level become dependent, vanish, or fall together with rows of a higher
-/// level.
+/// level. Inequality rows turn, some are violated at zero for a while, and two of them come to contradict each other.
 class StackPath {
  public:
-  StackPath(Random& random, int n, bool rank_changing);
+  StackPath(Random& random, int n, bool rank_changing, int inequalities = 0);
 
   Stack at(double s) const;
 
@@ -47,6 +47,8 @@ class StackPath {
   Curve room_;
   std::vector<Curve> a_;
   std::vector<Curve> b_;
+  Curve inequality_;
+  Curve inequality_lower_;
 };
 
 }  // namespace tope::test

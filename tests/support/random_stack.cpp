@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 
 #include <algorithm>
+#include <cmath>
 
 namespace tope::test {
 namespace {
@@ -51,10 +52,25 @@ void set_limits(Random& random, const RandomStackOptions& options, Stack& stack)
   }
 }
 
+/// Rows that contradict each other and the joints' bounds are among them, and a row of zeros.
+void set_inequalities(Random& random, Stack& stack) {
+  for (Eigen::Index i = 0; i < stack.inequality_lower.size(); ++i) {
+    stack.inequality.row(i) = random.vector(stack.size(), 1.0 / std::sqrt(stack.size())).transpose();
+    stack.inequality_lower[i] = random.chance(0.3) ? random.uniform(0.0, 0.5) : -random.uniform(0.0, 0.5);
+    if (i > 0 && random.chance(0.2)) {
+      stack.inequality.row(i) = -random.uniform(0.5, 2.0) * stack.inequality.row(i - 1);
+    }
+    if (random.chance(0.1)) {
+      stack.inequality.row(i).setZero();
+    }
+  }
+}
+
 }  // namespace
 
 Stack random_stack(Random& random, const RandomStackOptions& options) {
-  Stack stack(options.n);
+  Stack stack(options.n, options.inequalities);
+  set_inequalities(random, stack);
   if (random.chance(0.7)) {
     stack.motion = random.positive_definite(options.n, 0.3, 3.0).llt().matrixL();
   }

@@ -15,6 +15,7 @@ struct RandomStackOptions {
   double deficient = 0.3;  ///< share of tasks of deficient rank, and of tasks that repeat rows of others
   double weak = 0.0;       ///< share of tasks with singular values down to nearly zero
   bool beyond = false;     ///< some motion bounds exclude zero
+  int inequalities = 0;    ///< other rows with a lower bound, a third of them violated at zero
 };
 
 /// A stack of random tasks; several may share a level. Sizes of the problem stay near one.

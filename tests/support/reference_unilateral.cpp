@@ -13,6 +13,8 @@
 namespace tope::test {
 namespace {
 
+constexpr double kFar = 1e6;  // eiquadprog takes no infinite bound
+
 /// Weight of |z|^2: damping^2 far from the goal, fine_damping^2 at it.
 double weight(const Unilateral::Options& options, const Vector& residual) {
   const double r = residual.norm() / options.fine_below;
@@ -31,6 +33,24 @@ Matrix closed(const Matrix& open, const Matrix& a, double lock) {
     keep -= locked * v * v.transpose();
   }
   return open * keep;
+}
+
+Vector joined(const Vector& first, const Vector& second) {
+  Vector both(first.size() + second.size());
+  both << first, second;
+  return both;
+}
+
+/// y over s of level 0, with s itself as unknown: |y|^2 + |s|^2 / softness^2.
+Vector limit_level(const Stack& stack, const Vector& lower, const Vector& upper, double softness) {
+  const Eigen::Index n = stack.size();
+  const Eigen::Index p = stack.inequality.rows();
+  Matrix slack_cost = Matrix::Zero(p, n + p);
+  slack_cost.rightCols(p).diagonal().setConstant(std::sqrt(1.0 / (softness * softness) - 1.0));
+  Matrix rows = Matrix::Zero(n + p, n + p);
+  rows.leftCols(n) = bounded_rows(stack);
+  rows.bottomRightCorner(p, p).setIdentity();
+  return reference_bounded_least_squares(slack_cost, Vector::Zero(p), 1.0, rows, lower, upper);
 }
 
 }  // namespace
@@ -55,12 +75,20 @@ Vector reference_bounded_least_squares(const Matrix& a, const Vector& r, double 
   return z;
 }
 
+Matrix bounded_rows(const Stack& stack) {
+  Matrix rows(stack.motion.rows() + stack.inequality.rows(), stack.size());
+  rows << stack.motion, stack.inequality;
+  return rows;
+}
+
 std::vector<ReferenceLevel> reference_unilateral(const Stack& stack, const Selection& selection,
                                                  const Unilateral::Options& options) {
   const int n = stack.size();
   std::vector<ReferenceLevel> levels;
+  const Matrix bounded = bounded_rows(stack);
   Matrix open = Matrix::Identity(n, n);
   Vector y = Vector::Zero(n);
+  Vector slack = Vector::Zero(stack.inequality.rows());
   const int last = stack.tasks.empty() ? 0 : stack.tasks.back().level;
   for (int level = 0; level <= last; ++level) {
     const Matrix a = level_matrix(stack, selection, level);
@@ -68,19 +96,28 @@ std::vector<ReferenceLevel> reference_unilateral(const Stack& stack, const Selec
       continue;
     }
     const double headroom = options.headroom / (1.0 + level);
+    const double other_headroom = options.inequality_headroom / (1.0 + level);
     ReferenceLevel entry{
         .level = level,
         .open = open,
-        .lower = stack.motion_lower.array() + headroom,
-        .upper = stack.motion_upper.array() - headroom,
+        .lower = joined(stack.motion_lower.array() + headroom,
+                        (stack.inequality_lower - slack).array() + other_headroom),
+        .upper = joined(stack.motion_upper.array() - headroom, Vector::Constant(slack.size(), kFar)),
         .mu = level == 0 ? 1.0 : weight(options, level_target(stack, selection, level) - a * y),
         .a = a,
         .b = level_target(stack, selection, level),
         .singular = Vector(0),
-        .y = y};
-    const Vector now = stack.motion * y;
-    y += open * reference_bounded_least_squares(a * open, entry.b - a * y, entry.mu, stack.motion * open,
-                                                entry.lower - now, entry.upper - now);
+        .y = y,
+        .slack = slack};
+    if (level == 0) {
+      const Vector both = limit_level(stack, entry.lower, entry.upper, options.softness);
+      y = both.head(n);
+      entry.slack = slack = both.tail(slack.size());
+    } else {
+      const Vector now = bounded * y;
+      y += open * reference_bounded_least_squares(a * open, entry.b - a * y, entry.mu, bounded * open,
+                                                  entry.lower - now, entry.upper - now);
+    }
     entry.y = y;
     if (level > 0) {
       entry.singular = Eigen::JacobiSVD<Matrix>(a * open).singularValues();

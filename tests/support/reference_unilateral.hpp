@@ -16,14 +16,18 @@ Vector reference_bounded_least_squares(const Matrix& a, const Vector& r, double 
 struct ReferenceLevel {
   int level = 0;
   Matrix open;   ///< M as the level finds it (n x n)
-  Vector lower;  ///< tightened bounds on T y (n)
+  Vector lower;  ///< tightened bounds on [T; C] y (n + p), below level 0 less the slack
   Vector upper;
   double mu = 1.0;  ///< weight of |z|^2
   Matrix a;         ///< its tasks' rows (m x n), none at level 0
   Vector b;         ///< (m)
   Vector singular;  ///< singular values of A M
   Vector y;         ///< after the level
+  Vector slack;     ///< s of level 0 (p)
 };
+
+/// T over C ((n + p) x n).
+Matrix bounded_rows(const Stack& stack);
 
 /// The unilateral law by singular value decompositions and eiquadprog, level by level from 0.
 std::vector<ReferenceLevel> reference_unilateral(const Stack& stack, const Selection& selection,

@@ -11,6 +11,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace tope {
@@ -56,6 +57,13 @@ class Controller {
     return limits_.move(joint, motion);
   }
 
+  /// Moves an obstacle, CollisionLimits::body_index(), from the next update on; call it before every update while it
+  /// moves. Never allocates or throws. False, and nothing changes, without collisions, for a body that a link carries, or
+  /// for a bad motion.
+  [[nodiscard]] bool move_obstacle(int body, const BodyMotion& motion) noexcept {
+    return collisions_ && collisions_->move(body, motion);
+  }
+
   /// One cycle at state q (nq), v (nv) and time t [s]: writes the command u (nv). Never allocates, throws,
   /// locks, prints or reads a clock. Bad input: u = 0, Event::bad_input, nothing changed inside.
   const Status& update(const VectorArg& q, const VectorArg& v, double t, Eigen::Ref<Vector> u) noexcept;
@@ -72,6 +80,10 @@ class Controller {
   const Robot& robot() const { return robot_; }
   const ControllerOptions& options() const { return options_; }
   const JointLimits& limits() const { return limits_; }
+  /// The distances kept, as of the last update; null without any.
+  const CollisionLimits* collisions() const { return collisions_ ? &*collisions_ : nullptr; }
+  /// As describe(), for the last update.
+  std::string status_text() const;
   /// The sampled-time inequalities of this robot, method and period.
   std::vector<Condition> conditions() const;
 
@@ -107,6 +119,7 @@ class Controller {
   void stand_still(Eigen::Ref<Vector> u) const;
   void evaluate_dynamics(const VectorArg& q, const VectorArg& v);
   void fill_limits(const VectorArg& q, const VectorArg& v);
+  void fill_collisions(CollisionLimits& collisions);
   void fill_tasks(double t);
   void observe_tasks();
   void fill_field();
@@ -115,12 +128,14 @@ class Controller {
   CommandBounds bound_velocity();
   CommandBounds bound_torque(const VectorArg& q);
   void report(const CommandBounds& bounds);
+  void report_collisions(const CollisionLimits& collisions);
 
   Robot robot_;
   ControllerOptions options_;
   RobotTerms terms_;
   Vector authority_;  // what each drive can brake with, torque mode (n)
   JointLimits limits_;
+  std::optional<CollisionLimits> collisions_;
   std::optional<PotentialField> field_;
   Whitening whitening_;
   std::vector<Entry> entries_;  // sorted by level

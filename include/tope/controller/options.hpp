@@ -2,6 +2,7 @@
 
 #include <tope/controller/torque_bounds.hpp>
 #include <tope/law/law.hpp>
+#include <tope/limit/collision_limits.hpp>
 #include <tope/limit/joint_limits.hpp>
 #include <tope/limit/potential_field.hpp>
 
@@ -30,15 +31,18 @@ struct UnilateralOptions {
   std::optional<double> fine_below{};
   std::optional<double> lock{};
   std::optional<double> headroom{};
+  std::optional<double> inequality_headroom{};
+  std::optional<double> softness{};
 
   Unilateral::Options resolved(Mode mode) const;
 };
 
 struct LimitOptions {
   LimitMethod method = LimitMethod::unilateral;
-  JointLimitOptions rows{};                 ///< buffers, gain, ramp, margin
-  UnilateralOptions unilateral{};           ///< used by the method of that name
-  PotentialFieldOptions potential_field{};  ///< used by the method of that name
+  JointLimitOptions rows{};                      ///< buffers, gain, ramp, margin
+  UnilateralOptions unilateral{};                ///< used by the method of that name
+  PotentialFieldOptions potential_field{};       ///< used by the method of that name
+  std::optional<CollisionOptions> collisions{};  ///< distances to keep, by the method `unilateral` alone
   bool enforce_conditions = true;  ///< false: build the controller although a safety inequality fails
 };
 

@@ -45,6 +45,8 @@ class BoundedLeastSquares {
   bool hold(const PanelMatrix& a, double mu, const PanelMatrix& d, const Vector& lower, const Vector& upper);
   bool settle(const Vector& lower, const Vector& upper, ActiveRows& active);
   void gather(const ActiveRows& active);
+  void note_multipliers();
+  void mark_pressed(ActiveRows& active) const;
   bool fall_back(const PanelMatrix& a, const Vector& r, double mu, const PanelMatrix& d, const Vector& lower,
                  const Vector& upper, ActiveRows& active);
 

@@ -17,7 +17,8 @@ class LevelRows {
   int rows() const { return static_cast<int>(a_.rows()); }
   const PanelMatrix& a() const { return a_; }  ///< (rows x n)
   const Vector& b() const { return b_; }       ///< (rows, padded)
-  /// True when the rows are one task that asks for the motion itself: A = T. Then a() is not filled.
+  /// True when the rows are one task that asks for the motion itself, A = T, and T is all that is bounded. Then a() is
+  /// not filled.
   bool is_motion() const { return is_motion_; }
 
  private:

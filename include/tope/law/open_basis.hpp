@@ -9,18 +9,20 @@ namespace tope {
 class OpenBasis {
  public:
   /// For n unknowns.
-  explicit OpenBasis(int n);
+  explicit OpenBasis(int n) : OpenBasis(n, n) {}
+  /// With an image of up to `image_rows` >= n rows.
+  OpenBasis(int n, int image_rows);
 
   /// All directions are open: Z is the identity, and its image is not used.
   void reset();
   /// The same directions as another basis that has no image.
   void reset(const OpenBasis& other);
-  /// All directions, with the image T Z, for T (n x n).
+  /// All directions, with the image T Z, for T (up to image_rows x n).
   void reset(const Matrix& t);
 
   int size() const { return static_cast<int>(open_.cols()); }                ///< d, columns of Z
   const PanelMatrix& columns() const { return open_; }                       ///< Z (n x d)
-  const PanelMatrix& image() const { return with_image_ ? image_ : open_; }  ///< T Z (n x d)
+  const PanelMatrix& image() const { return with_image_ ? image_ : open_; }  ///< T Z (rows of T x d)
   bool has_image() const { return with_image_; }
   /// A Z (m x d): in `workspace`, or A itself while all directions are open.
   const PanelMatrix& project(const PanelMatrix& a, PanelMatrix& workspace) const;
@@ -47,7 +49,7 @@ class OpenBasis {
   bool orthonormal_ = true;
   PanelMatrix rows_;   // what is to be taken out whole (m x d)
   Matrix reflectors_;  // V (d x m)
-  Matrix along_;       // M V (n x m), padded
+  Matrix along_;       // M V (rows of M x m), padded
   Matrix triangle_;    // T (m x m)
   Vector shares_;
 };

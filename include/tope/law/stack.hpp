@@ -17,9 +17,9 @@ struct TaskRows {
 };
 
 /// Everything a law sees at one instant: n unknowns y, limits on the motion T y (joint velocities or
-/// accelerations), and tasks in order of level. No robot in here.
+/// accelerations), other rows with a lower bound, and tasks in order of level. No robot in here.
 struct Stack {
-  explicit Stack(int n);
+  explicit Stack(int n, int inequalities = 0);
 
   int size() const { return static_cast<int>(motion.rows()); }
 
@@ -29,7 +29,10 @@ struct Stack {
   Vector limit_target;       ///< motion asked for by the limit row where it is active (n)
   Vector motion_lower;       ///< bounds of the motion (n), for the unilateral law
   Vector motion_upper;
-  Vector headroom_share;        ///< of the unilateral law's headroom, for each joint's bounds (n)
+  Vector headroom_share;  ///< of the unilateral law's headroom, for each joint's bounds (n)
+  /// Limits on anything but the joints, for the unilateral law: C y >= lower, C (p x n), lower (p).
+  Matrix inequality;
+  Vector inequality_lower;
   std::vector<TaskRows> tasks;  ///< sorted by level
 
   /// Largest number of rows that one level can have.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tope/law/limit_method.hpp>
+#include <tope/limit/collision_limits.hpp>
 #include <tope/limit/joint_limits.hpp>
 
 #include <string>
@@ -30,6 +31,11 @@ std::vector<Condition> velocity_conditions(const Robot& robot, const JointLimits
 /// is what each drive can brake with, braking_authority() [rad/s2 or m/s2].
 std::vector<Condition> torque_conditions(const Robot& robot, const JointLimits& limits, LimitMethod method,
                                          const Vector& headroom, double dt, const Vector& authority);
+
+/// The inequalities of the distances to keep, beside those of the joints, in velocity mode and in torque mode.
+std::vector<Condition> velocity_conditions(const CollisionLimits& collisions, double dt);
+std::vector<Condition> torque_conditions(const CollisionLimits& collisions, const JointLimits& limits,
+                                         double dt);
 
 /// A joint's headroom for the unilateral law: `most`, or half of the largest that leaves it an interior, when that is less
 /// [rad/s or m/s; of second order: per second more].

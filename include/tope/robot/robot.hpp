@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tope/common/types.hpp>
+#include <tope/robot/collision_geometry.hpp>
 #include <tope/robot/mecanum_base.hpp>
 
 #include <filesystem>
@@ -43,6 +44,8 @@ struct RobotConfig {
     std::optional<double> torque{};  ///< bound about each axis [Nm]
   };
   std::optional<MovingBase> base;
+  /// Spheres that cover the links, bodies that they keep clear of.
+  CollisionGeometry collisions;
 
   /// Reads a robot's YAML file. Errors: ConfigError with file, line and key.
   static RobotConfig from_yaml(const std::filesystem::path& file);
@@ -71,6 +74,10 @@ class Robot {
   /// Errors: ConfigError for an unknown name, with the nearest known one.
   int joint_index(const std::string& name) const;
   int frame_index(const std::string& name) const;
+  /// True for a frame that no joint moves.
+  bool fixed_in_world(int frame) const;
+  /// True for frames on one link or on two that a joint connects.
+  bool neighbours(int frame, int other) const;
   const std::string& frame_name(int frame) const { return frame_names_[static_cast<std::size_t>(frame)]; }
 
   /// Bounds of each joint (nv). Infinite where a joint has none.
@@ -91,6 +98,7 @@ class Robot {
   const std::optional<RobotConfig::MovingBase>& moving_base() const { return moving_base_; }
   /// Every joint that is held fixed, with its position [rad or m]: those of the configuration and their mimics.
   const std::map<std::string, double>& locked_joints() const { return locked_joints_; }
+  const CollisionGeometry& collisions() const { return collisions_; }
   const RobotModel& model() const { return *model_; }
 
  private:
@@ -110,6 +118,7 @@ class Robot {
   std::optional<MecanumBase> base_;
   std::optional<RobotConfig::MovingBase> moving_base_;
   std::map<std::string, double> locked_joints_;
+  CollisionGeometry collisions_;
 };
 
 }  // namespace tope

@@ -28,8 +28,9 @@ struct Summary {
   Vector buffer_time;         ///< seconds spent inside a buffer (n)
   Vector sensor_error;        ///< how far the sensors are from the truth at the end (n)
   std::map<std::string, TaskResult> tasks;
-  std::map<std::string, double> contacts;  ///< Plant::contacts()
-  std::optional<double> time_to_goal;      ///< from here on every goal's error stays below its tolerance [s]
+  std::map<std::string, double> contacts;        ///< Plant::contacts()
+  std::map<std::string, double> least_distance;  ///< of each pair that is to keep its distance [m]
+  std::optional<double> time_to_goal;  ///< from here on every goal's error stays below its tolerance [s]
   std::map<std::string, int> status_counts;
   std::array<double, 4> cycle_time_us{};  ///< p50, p99, p99.9, max of Controller::update
   int cycles = 0;

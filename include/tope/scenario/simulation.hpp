@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace tope {
@@ -35,7 +36,7 @@ class Simulation {
 
  private:
   void write_row();
-  void evaluate_errors();
+  void evaluate_truth();
   Summary complete(Summary summary, const Smoothness& smoothness) const;
 
   SimulationOptions options_;
@@ -47,6 +48,8 @@ class Simulation {
   std::vector<std::shared_ptr<const Task>> true_of_;  // what they are copies of
   std::vector<Vector> errors_;                        // of each task at the true state
   std::vector<double> norms_;
+  std::optional<CollisionLimits> true_distances_;
+  Vector least_distance_;
   std::vector<double> cycle_times_;
 };
 
