@@ -66,6 +66,16 @@ int frame_of(const Robot& robot, const std::string& what, const std::string& fra
   }
 }
 
+bool concerns(const CollisionExclusion& exclusion, const CollisionSphere& sphere) {
+  return exclusion.sphere == sphere.name || exclusion.sphere == sphere.frame;
+}
+
+bool excluded(const CollisionGeometry& geometry, const CollisionSphere& sphere, const CollisionBody& body) {
+  return std::any_of(geometry.exclude.begin(), geometry.exclude.end(), [&](const auto& exclusion) {
+    return exclusion.body == body.name && concerns(exclusion, sphere);
+  });
+}
+
 }  // namespace
 
 struct CollisionLimits::Geometry {
@@ -153,8 +163,21 @@ CollisionLimits::CollisionLimits(const Robot& robot, const CollisionOptions& opt
   require_positive("collisions: margin", margin_);
   require_positive("collisions: gain", gain_);
   require_positive("collisions: servo_gain", servo_gain_);
-  add_pairs(robot, joined(robot.collisions(), options.geometry));
-  const Eigen::Index pairs = static_cast<Eigen::Index>(names_.size());
+  const CollisionGeometry given = joined(robot.collisions(), options.geometry);
+  const std::vector<std::string> sphere_names = unique_names(given.spheres, "sphere");
+  geometry_->body_names = unique_names(given.bodies, "body");
+  add_spheres(robot, given.spheres);
+  add_bodies(robot, given.bodies);
+  for (const CollisionExclusion& exclusion : given.exclude) {
+    body_index(exclusion.body);
+    if (std::none_of(given.spheres.begin(), given.spheres.end(),
+                     [&](const auto& sphere) { return concerns(exclusion, sphere); })) {
+      throw ConfigError("collisions: exclude: unknown sphere or frame '" + exclusion.sphere + "'" +
+                        name_hint(exclusion.sphere, sphere_names));
+    }
+  }
+  add_pairs(robot, given);
+  const auto pairs = static_cast<Eigen::Index>(names_.size());
   distance_ = Vector::Zero(pairs);
   jacobian_ = Matrix::Zero(pairs, robot.nv());
   motion_lower_ = Vector::Zero(pairs);
@@ -164,17 +187,22 @@ CollisionLimits::~CollisionLimits() = default;
 CollisionLimits::CollisionLimits(CollisionLimits&&) noexcept = default;
 CollisionLimits& CollisionLimits::operator=(CollisionLimits&&) noexcept = default;
 
-void CollisionLimits::add_pairs(const Robot& robot, const CollisionGeometry& given) {
-  const std::vector<std::string> sphere_names = unique_names(given.spheres, "sphere");
-  geometry_->body_names = unique_names(given.bodies, "body");
-  for (const CollisionSphere& sphere : given.spheres) {
-    require_positive("collisions: sphere " + sphere.name + ": radius", sphere.radius);
-    geometry_->balls.push_back({.frame = frame_of(robot, "sphere " + sphere.name, sphere.frame),
+void CollisionLimits::add_spheres(const Robot& robot, const std::vector<CollisionSphere>& spheres) {
+  for (const CollisionSphere& sphere : spheres) {
+    const std::string what = "sphere " + sphere.name;
+    require_positive("collisions: " + what + ": radius", sphere.radius);
+    if (!sphere.center.allFinite()) {
+      throw ConfigError("collisions: " + what + ": its center must be finite");
+    }
+    geometry_->balls.push_back({.frame = frame_of(robot, what, sphere.frame),
                                 .center = sphere.center,
                                 .radius = sphere.radius,
                                 .jacobian = PointJacobian::Zero(3, robot.nv())});
   }
-  for (const CollisionBody& body : given.bodies) {
+}
+
+void CollisionLimits::add_bodies(const Robot& robot, const std::vector<CollisionBody>& bodies) {
+  for (const CollisionBody& body : bodies) {
     const std::string what = "body " + body.name;
     if (!body.position.allFinite() || !is_rotation(body.rotation)) {
       throw ConfigError("collisions: " + what + ": its position must be finite, its rotation orthonormal");
@@ -185,30 +213,17 @@ void CollisionLimits::add_pairs(const Robot& robot, const CollisionGeometry& giv
                                  .local_rotation = body.rotation,
                                  .jacobian = FrameJacobian::Zero(6, robot.nv())});
   }
-  for (const CollisionExclusion& exclusion : given.exclude) {
-    const auto names_it = [&](const CollisionSphere& sphere) {
-      return sphere.name == exclusion.sphere || sphere.frame == exclusion.sphere;
-    };
-    if (std::none_of(given.spheres.begin(), given.spheres.end(), names_it)) {
-      throw ConfigError("collisions: exclude: unknown sphere or frame '" + exclusion.sphere + "'" +
-                        name_hint(exclusion.sphere, sphere_names));
-    }
-    body_index(exclusion.body);
-  }
-  const auto excluded = [&](const CollisionSphere& sphere, const CollisionBody& body) {
-    return std::any_of(given.exclude.begin(), given.exclude.end(), [&](const CollisionExclusion& exclusion) {
-      return exclusion.body == body.name &&
-             (exclusion.sphere == sphere.name || exclusion.sphere == sphere.frame);
-    });
-  };
+}
+
+void CollisionLimits::add_pairs(const Robot& robot, const CollisionGeometry& given) {
   for (std::size_t i = 0; i < given.spheres.size(); ++i) {
     for (std::size_t k = 0; k < given.bodies.size(); ++k) {
       const int frame = geometry_->balls[i].frame;
       const Geometry::Body& body = geometry_->bodies[k];
       const bool near = body.in_world() ? robot.fixed_in_world(frame) : robot.neighbours(frame, body.frame);
-      if (!near && !excluded(given.spheres[i], given.bodies[k])) {
+      if (!near && !excluded(given, given.spheres[i], given.bodies[k])) {
         geometry_->pairs.push_back({.ball = i, .body = k});
-        names_.push_back(sphere_names[i] + "." + geometry_->body_names[k]);
+        names_.push_back(given.spheres[i].name + "." + given.bodies[k].name);
       }
     }
   }

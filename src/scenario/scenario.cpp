@@ -134,14 +134,13 @@ LimitOptions read_limits(const YamlReader& yaml, Robot& robot, std::vector<Movin
 }
 
 /// `collisions`: distances to keep between the robot's spheres and obstacles, beside those of the robot's own file.
-CollisionOptions read_collisions(const YamlReader& yaml, const Robot& robot) {
+CollisionOptions read_collisions(const YamlReader& yaml) {
   CollisionOptions options;
   options.geometry = read_collision_geometry(yaml, "obstacles");
   options.margin = yaml.positive("margin", options.margin);
   options.gain = positive_if_given(yaml, "gain");
   options.servo_gain = positive_if_given(yaml, "servo_gain");
   yaml.finish();
-  const CollisionLimits checked(robot, options, JointLimits::default_gain, JointLimitOptions{}.servo_gain);
   return options;
 }
 
@@ -374,8 +373,11 @@ Scenario Scenario::load(const std::filesystem::path& file,
     scenario.controller.limits = read_limits(*limits, robot, scenario.moving_limits);
   }
   if (const auto collisions = yaml.optional_map("collisions")) {
-    scenario.controller.limits.collisions =
-        located(yaml, "collisions", [&] { return read_collisions(*collisions, robot); });
+    const CollisionOptions options = read_collisions(*collisions);
+    located(yaml, "collisions", [&] {
+      CollisionLimits(robot, options, JointLimits::default_gain, JointLimitOptions{}.servo_gain);
+    });
+    scenario.controller.limits.collisions = options;
   }
   if (const auto singularities = yaml.optional_map("singularities")) {
     scenario.controller.singularities = read_singularities(*singularities);

@@ -426,6 +426,7 @@ BOOST_AUTO_TEST_CASE(refuses_bad_geometry) {
   refuse([](O& o) { o.gain = -1.0; }, {"collisions: gain must be positive"});
   refuse([](O& o) { o.servo_gain = NAN; }, {"collisions: servo_gain must be positive"});
   refuse([](O& o) { o.geometry.spheres[0].radius = 0.0; }, {"sphere ball: radius must be positive"});
+  refuse([](O& o) { o.geometry.spheres[0].center.x() = NAN; }, {"sphere ball", "center must be finite"});
   refuse([](O& o) { o.geometry.spheres[0].frame = "eee"; }, {"sphere ball", "unknown frame 'eee'", "ee"});
   refuse([](O& o) { o.geometry.bodies[0].frame = "base"; }, {"body post", "unknown frame 'base'"});
   refuse([](O& o) { o.geometry.bodies[0].shape = shape::Box{Vector3(1.0, 0.0, 1.0)}; },

@@ -81,7 +81,9 @@ class CollisionLimits {
  private:
   struct Geometry;
 
-  void add_pairs(const Robot& robot, const CollisionGeometry& geometry);
+  void add_spheres(const Robot& robot, const std::vector<CollisionSphere>& spheres);
+  void add_bodies(const Robot& robot, const std::vector<CollisionBody>& bodies);
+  void add_pairs(const Robot& robot, const CollisionGeometry& given);
   void locate(const RobotTerms& terms);
 
   double margin_;
