@@ -16,7 +16,7 @@ import numpy as np
 import pink
 import pinocchio
 from closed_loop import NEAR, ORIENTATION_WEIGHT, Peer, Setup, main
-from geometry import Pose, forward, towards
+from geometry import Pose, towards
 from pink.limits import ConfigurationLimit, VelocityLimit
 from pink.tasks import FrameTask, PostureTask
 
@@ -78,7 +78,7 @@ class Pink(Peer):
     def prepare(self, q: np.ndarray) -> None:
         """A target that is near enough for a constraint."""
         if self.constraints is not None:
-            here = forward(self.setup.joints, self.setup.tip, q).rotation
+            here = self.setup.tip_at(q).rotation
             target = pinocchio.SE3(towards(here, self.goal.rotation, NEAR), self.goal.position)
             self.constraints[0].set_target(target)
 

@@ -17,7 +17,7 @@ from __future__ import annotations
 import numpy as np
 import tsid
 from closed_loop import NEAR, ORIENTATION_WEIGHT, NoCommandError, Peer, Setup, main
-from geometry import Pose, forward, towards
+from geometry import Pose, towards
 from rigid_body import RigidBody
 
 ACCELERATION = {
@@ -109,7 +109,7 @@ class Tsid(Peer):
     def prepare(self, q: np.ndarray) -> None:
         """A target that is near enough for a constraint."""
         if self.constrained:
-            here = forward(self.setup.joints, self.setup.tip, q).rotation
+            here = self.setup.tip_at(q).rotation
             turned = towards(here, self.goal.rotation, NEAR)
             self.orientation.setReference(sample_of(turned, self.goal.position))
 
