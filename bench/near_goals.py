@@ -59,7 +59,7 @@ SETTLED = 2e-4  # m and rad; a run that is so near ends
 CONTINUOUS = 8.0  # ratio of the largest jumps at dt and dt / 10 from which a command counts as continuous
 PROGRAMS: Mapping[str, Sequence[tuple[str, str]]] = {
     "velocity": (("tope", "unilateral"), ("tope", "chain"), ("pink", "default"), ("pink", "weights")),
-    "torque": (("tope", "unilateral"), ("tsid", "weights"), ("tsid", "weights+torque-bounds")),
+    "torque": (("tope", "unilateral"), ("tsid", "weights+torque-bounds")),
 }
 HEADER = (
     "robot",
@@ -67,12 +67,12 @@ HEADER = (
     "reached",
     f"of those within {1e3 * MARGIN:g} mrad",
     "oriented",
-    "median miss of the others",
-    "limit crossed by, or kept",
+    "others missed by [mm, mrad]",
+    "limit crossed by",
     "jump at 1 ms",
     "0.1 ms",
     "ratio",
-    f"ratio >= {CONTINUOUS:g}",
+    f"ratio ≥ {CONTINUOUS:g}",
     "failed cycles, runs",
 )
 
@@ -165,12 +165,13 @@ def draw(robot: Machine, number: int) -> Goal:
             return Goal(robot.names[j], side, distance, q.tolist(), start.tolist())
 
 
-def write(folder: Path, mode: str, robot: Machine, goals: Sequence[Goal], fine: int) -> Path:
+def write(file: Path, lowest: str, robot: Machine, goals: Sequence[Goal], fine: int) -> Path:
     """Write the scenario of a robot, the first `fine` goals to be run with the short cycle too."""
     names = [f"goal_{number}" for number in range(len(goals))]
     lines: list[scenario.Line] = [
         ("duration", [DURATION]),
         ("settled", [SETTLED]),
+        ("lowest", [lowest]),
         ("chain", robot.chain),
         ("start", goals[0].start),
         ("fine", names[:fine]),
@@ -178,33 +179,103 @@ def write(folder: Path, mode: str, robot: Machine, goals: Sequence[Goal], fine: 
     for name, goal in zip(names, goals, strict=True):
         lines.append(("start_of", [name, *goal.start]))
         lines.append(scenario.goal_line(name, robot.hand(np.array(goal.q))))
-    return scenario.write_scenario(folder, mode, robot.urdf, robot.names, robot.inertia, lines)
+    return scenario.write_scenario(
+        file.parent, file.stem, robot.urdf, robot.names, inertia=robot.inertia, more=lines
+    )
 
 
-def summary(robot: str, goals: Sequence[Goal], found: Mapping[str, Any]) -> tuple[str, ...]:
+@dataclass(frozen=True)
+class Job:
+    """One program on one robot."""
+
+    robot: str
+    lowest: str  # the last task
+    program: peers.Program
+    goals: Sequence[Goal]
+    file: Path
+
+    @property
+    def library(self) -> str:
+        """And how it is driven."""
+        return f"{self.program.name}: {self.program.configuration}"
+
+    def run(self) -> dict[str, Any]:
+        """What it measured."""
+        return {"robot": self.robot, "lowest": self.lowest} | peers.run(self.program, self.file)
+
+
+Found = Sequence[tuple[Job, Mapping[str, Any]]]  # what was measured
+
+
+def jobs(robots: Sequence[str], counts: Mapping[str, int], fine: int, out: Path) -> list[Job]:
+    """All programs on all robots, so many goals by the last task, their scenarios written to a folder."""
+    result = []
+    drawn: dict[str, dict[str, list[dict[str, Any]]]] = {}
+    for mode, programs in PROGRAMS.items():
+        for robot in robots:
+            described = machine(robot, mode)
+            goals = [draw(described, number) for number in range(max(counts.values()))]
+            drawn.setdefault(mode, {})[robot] = [asdict(goal) for goal in goals]
+            for lowest, count in counts.items():
+                folder = out / lowest / robot / mode
+                folder.mkdir(parents=True, exist_ok=True)
+                some = goals[:count]
+                file = write(folder / f"{mode}.txt", lowest, described, some, fine if lowest == "rest" else 0)
+                for name, configuration in programs:
+                    program = peers.Program(name, "Python", mode, configuration)
+                    result.append(Job(robot, lowest, program, some, file))
+    (out / "goals.json").write_text(json.dumps(drawn, indent=1), encoding="utf-8")
+    return result
+
+
+def table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Markdown."""
+    lines = ["| " + " | ".join(cells) + " |" for cells in (header, *rows)]
+    return "\n".join([lines[0], "|---" * len(header) + "|", *lines[1:]])
+
+
+def tables(found: Found) -> str:
+    """The page's part: by mode all figures, and what a posture below changes; what was not measured."""
+    measured = [(job, each) for job, each in found if "absent" not in each]
+    parts = []
+    for mode in PROGRAMS:
+        some = [(job, each) for job, each in measured if job.program.mode == mode]
+        rows = [summary(job, each) for job, each in some if job.lowest == "rest"]
+        parts.append(f"## {mode.capitalize()} mode\n\n{table(HEADER, rows)}")
+        parts.append(f"Reached with a posture below:\n\n{with_posture(some)}")
+    for job, each in found:
+        if "absent" in each:
+            parts.append(f"Not measured: {job.robot}, {job.library}: {each['absent']}.")
+    return "\n\n".join(parts)
+
+
+def summary(job: Job, found: Mapping[str, Any]) -> tuple[str, ...]:
     """A program's figures under HEADER."""
     coarse = {run["goal"]: run for run in found["runs"] if run["dt"] == scenario.DT}
     fine = {run["goal"]: run for run in found["runs"] if run["dt"] < scenario.DT}
+    count = len(coarse)
     reached = [run for run in coarse.values() if miss(run) < peers.REACHED]
     others = [miss(run) for run in coarse.values() if miss(run) >= peers.REACHED]
-    inside = [coarse[f"goal_{number}"] for number, goal in enumerate(goals) if goal.distance < MARGIN]
+    inside = [coarse[f"goal_{number}"] for number, goal in enumerate(job.goals) if goal.distance < MARGIN]
     pairs = [(coarse[goal]["jump"], run["jump"]) for goal, run in fine.items()]
-    ratios = [jump / fine_jump for jump, fine_jump in pairs if fine_jump > 0]
+    ratios = [jump / fine_jump if fine_jump > 0 else math.inf for jump, fine_jump in pairs]
+    jump, fine_jump = (f"{100 * median(jumps):.3g} %" for jumps in zip(*pairs, strict=True))
     beyond = max(run["violation"] for run in found["runs"])
     failures = sum(run["failures"] for run in coarse.values())
     failed = sum(run["failures"] > 0 for run in coarse.values())
     return (
-        robot,
-        f"{found['name']} {found['version']}: {found['configuration']}",
-        f"{len(reached)} of {len(goals)}",
+        job.robot,
+        job.library,
+        f"{len(reached)} of {count}",
         f"{sum(miss(run) < peers.REACHED for run in inside)} of {len(inside)}",
-        str(sum(run["orientation_error"] < peers.REACHED for run in coarse.values())),
-        f"{1e3 * median(others):.2g} mm or mrad" if others else "-",
-        f"crossed by {beyond:.1e}" if beyond > peers.ROUNDING else f"kept {-beyond:.1e}",
-        *(f"{100 * median(jumps):.3g} %" for jumps in zip(*pairs, strict=True)),
+        f"{sum(run['orientation_error'] < peers.REACHED for run in coarse.values())} of {count}",
+        f"{1e3 * median(others):.2g}" if others else "-",
+        f"{beyond:.1e}" if beyond > peers.ROUNDING else "0",
+        jump,
+        fine_jump,
         f"{median(ratios):.1f}",
         f"{sum(ratio >= CONTINUOUS for ratio in ratios)} of {len(pairs)}",
-        f"{failures}, {failed}" if failures else "0",
+        f"{failures}, {failed} of {count}" if failures else "0",
     )
 
 
@@ -213,78 +284,38 @@ def miss(run: Mapping[str, Any]) -> float:
     return float(max(run["position_error"], run["orientation_error"]))
 
 
-def table(rows: Iterable[Sequence[str]]) -> str:
-    """Rows under HEADER as Markdown."""
-    lines = ["| " + " | ".join(cells) + " |" for cells in (HEADER, *rows)]
-    return "\n".join([lines[0], "|---" * len(HEADER) + "|", *lines[1:]])
-
-
-@dataclass(frozen=True)
-class Job:
-    """One program on one robot."""
-
-    robot: str
-    program: peers.Program
-    goals: Sequence[Goal]
-    file: Path
-
-    def run(self) -> dict[str, Any]:
-        """What it measured."""
-        return {"robot": self.robot} | peers.run(self.program, self.file)
-
-
-def jobs(robots: Sequence[str], modes: Sequence[str], count: int, fine: int, out: Path) -> list[Job]:
-    """All programs on all robots, their goals and scenarios written to a folder."""
-    result = []
-    drawn: dict[str, dict[str, list[dict[str, Any]]]] = {}
-    for mode in modes:
-        for robot in robots:
-            described = machine(robot, mode)
-            goals = [draw(described, number) for number in range(count)]
-            drawn.setdefault(mode, {})[robot] = [asdict(goal) for goal in goals]
-            folder = out / mode / robot
-            folder.mkdir(parents=True, exist_ok=True)
-            file = write(folder, mode, described, goals, fine)
-            for name, configuration in PROGRAMS[mode]:
-                program = peers.Program(name, "Python", mode, configuration)
-                result.append(Job(robot, program, goals, file))
-    (out / "goals.json").write_text(json.dumps(drawn, indent=1), encoding="utf-8")
-    return result
-
-
-def tables(wanted: Sequence[Job], found: Sequence[Mapping[str, Any]]) -> str:
-    """The page's part: a table of each mode, and what was not measured."""
-    parts = []
-    for mode in dict.fromkeys(job.program.mode for job in wanted):
-        pairs = [pair for pair in zip(wanted, found, strict=True) if pair[0].program.mode == mode]
-        rows = [summary(job.robot, job.goals, each) for job, each in pairs if "absent" not in each]
-        parts.append(f"## {mode.capitalize()} mode\n\n{table(rows)}")
-    absent = [each for each in found if "absent" in each]
-    parts += [
-        f"{each['robot']}, {each['name']} {each['configuration']}: {each['absent']}." for each in absent
-    ]
-    return "\n\n".join(parts)
+def with_posture(found: Found) -> str:
+    """Goals reached where the last task is a posture: a row a robot, a column a library."""
+    cells: dict[str, dict[str, str]] = {}
+    for job, each in found:
+        if job.lowest == "posture":
+            reached = sum(miss(run) < peers.REACHED for run in each["runs"])
+            cells.setdefault(job.robot, {})[job.library] = f"{reached} of {len(job.goals)}"
+    libraries = list(dict.fromkeys(library for row in cells.values() for library in row))
+    rows = [(robot, *(row.get(library, "-") for library in libraries)) for robot, row in cells.items()]
+    return table(("robot", *libraries), rows)
 
 
 def main() -> None:
     """Draw the goals, run every program on every robot, write the page."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--count", type=int, default=100, help="goals of each robot")
-    parser.add_argument("--fine", type=int, default=10, help="how many of them at a tenth of the period too")
+    parser.add_argument("--fine", type=int, default=8, help="how many of them at a tenth of the period too")
+    parser.add_argument("--posture", type=int, default=20, help="how many of them with a posture as well")
     parser.add_argument("--robots", nargs="+", default=list(SCENARIOS), choices=SCENARIOS)
-    parser.add_argument("--modes", nargs="+", default=list(PROGRAMS), choices=PROGRAMS)
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="programs at a time")
     parser.add_argument(
         "--out", type=Path, default=ROOT / "runs" / "near-goals", help="folder of all figures"
     )
     parser.add_argument("--page", action="store_true", help=f"write the tables to {PAGE.relative_to(ROOT)}")
     arguments = parser.parse_args()
-    wanted = jobs(arguments.robots, arguments.modes, arguments.count, arguments.fine, arguments.out)
+    counts = {"rest": arguments.count, "posture": min(arguments.posture, arguments.count)}
+    wanted = jobs(arguments.robots, counts, arguments.fine, arguments.out)
     with ThreadPoolExecutor(arguments.jobs) as pool:
         results = pool.map(Job.run, wanted)
         found = list(track(results, total=len(wanted), description="programs", transient=True))
     (arguments.out / "figures.json").write_text(json.dumps(found, indent=1), encoding="utf-8")
-    text = tables(wanted, found)
+    text = tables(list(zip(wanted, found, strict=True)))
     print(text)
     if arguments.page:
         before = PAGE.read_text(encoding="utf-8").partition(MARK)[0]

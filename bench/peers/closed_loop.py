@@ -45,6 +45,7 @@ class Setup:
     repeats: int = 1
     gain: float = 0.0  # 1/s
     posture_gain: float = 0.0  # 1/s
+    lowest: str = "posture"  # the last task: towards the start, or `rest`
     limit_gain: float = 0.0  # 1/s
     start: np.ndarray = field(default_factory=lambda: np.zeros(0))  # m and rad, as are the limits
     lower: np.ndarray = field(default_factory=lambda: np.zeros(0))
@@ -57,7 +58,7 @@ class Setup:
     goals: dict[str, Pose] = field(default_factory=dict)
     starts: dict[str, np.ndarray] = field(default_factory=dict)  # by goal, where each has its own
     chain: np.ndarray | slice = field(default_factory=lambda: slice(None))  # which of the joints move the tip
-    fine: tuple[str, ...] = NAMED  # goals that are timed, and run with the short cycle too
+    fine: tuple[str, ...] = NAMED  # goals that are run with the short cycle too, and timed if there are any
     settled: float = 0.0  # m and rad; a run ends early once both errors are smaller
 
     def tip_at(self, q: np.ndarray) -> Pose:
@@ -90,7 +91,7 @@ def read(file: Path) -> Setup:
             setup.starts[values[0]] = np.array(values[1:], dtype=float)
         elif key == "tip":
             setup.tip = read_pose(values)
-        elif key in ("urdf", "config", "mode"):
+        elif key in ("urdf", "config", "mode", "lowest"):
             setattr(setup, key, values[0])
         elif key == "repeats":
             setup.repeats = int(values[0])
@@ -223,8 +224,9 @@ def measure(peer: Peer, setup: Setup, plant: Plant | None = None) -> dict[str, A
         setup.start = setup.starts.get(goal, setup.start)
         done, cost = run(peer, setup, goal, setup.dt, plant)
         runs.append(done)
-        if goal in setup.fine:
+        if goal in (setup.fine or setup.goals):
             times.append(cost)
+        if goal in setup.fine:
             runs.append(run(peer, setup, goal, setup.dt / FINE, plant)[0])
     p50, p99 = np.percentile(np.concatenate(times), [50, 99])
     return {

@@ -67,7 +67,8 @@ class Pink(Peer):
             orientation_cost = 0.0
         task = FrameTask("ee", position_cost=1.0, orientation_cost=orientation_cost, gain=part)
         task.set_target(target)
-        posture = PostureTask(cost=POSTURE_COST, gain=self.setup.posture_gain * dt)
+        posture_gain = 0.0 if self.setup.lowest == "rest" else self.setup.posture_gain
+        posture = PostureTask(cost=POSTURE_COST, gain=posture_gain * dt)
         posture.set_target(self.setup.start)
         self.tasks = [task, posture]
         self.limits = None  # its own: both kinds, gain 0.5 a cycle

@@ -49,7 +49,7 @@ def write(folder: Path, mode: str, goals: int, repeats: int) -> Path:
     inertia = rotor_inertia((ROBOT / "youbot.yaml").read_text(encoding="utf-8"))
     lines: list[Line] = [("duration", [DURATION[mode]]), ("repeats", [repeats]), ("start", START)]
     lines += [goal_line(*goal) for goal in targets(forward(joints, tip, START), goals).items()]
-    return write_scenario(folder, mode, robot, [joint.name for joint in joints], inertia, lines)
+    return write_scenario(folder, mode, robot, [joint.name for joint in joints], inertia=inertia, more=lines)
 
 
 def write_scenario(
@@ -57,10 +57,11 @@ def write_scenario(
     mode: str,
     robot: ET.Element,
     names: Sequence[str],
+    *,
     inertia: Mapping[str, float],
     more: Iterable[Line],
 ) -> Path:
-    """Write a plain robot and a scenario of it, its joints in the order of `names`; rotors not named are light."""
+    """Write a plain robot and a scenario of it, its joints ordered as `names`."""
     urdf = folder / f"{robot.get('name')}.urdf"
     ET.ElementTree(robot).write(urdf)
     config = folder / f"{robot.get('name')}.yaml"

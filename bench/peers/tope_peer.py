@@ -1,7 +1,8 @@
 """tope itself, through the loop that its peers go through. Configurations: ways to meet limits,
 `unilateral`, `chain`.
 
-Settings: tope's defaults. Orientation in level 1, position in level 2, posture in level 3.
+Settings: tope's defaults. Orientation in level 1, position in level 2, posture in level 3; or, if the joints
+are to rest, nothing there and damping in torque mode.
 """
 
 from __future__ import annotations
@@ -30,16 +31,17 @@ class Tope(Peer):
     def start(self, goal: Pose, dt: float) -> None:
         """Begin anew."""
         reference = tope.Exponential(gain=self.setup.gain)
-        posture = tope.Exponential(gain=self.setup.posture_gain)
         self.controller = tope.Controller(self.robot, mode=self.setup.mode, dt=dt, limits=self.limits)
-        for level, task in enumerate(
-            (
-                tope.FrameOrientation(frame="ee", target=goal.rotation, reference=reference),
-                tope.FramePosition(frame="ee", target=goal.position, reference=reference),
-                tope.Posture(target=self.setup.start, reference=posture),
-            ),
-            start=1,
-        ):
+        tasks = [
+            tope.FrameOrientation(frame="ee", target=goal.rotation, reference=reference),
+            tope.FramePosition(frame="ee", target=goal.position, reference=reference),
+        ]
+        if self.setup.lowest == "posture":
+            posture = tope.Exponential(gain=self.setup.posture_gain)
+            tasks.append(tope.Posture(target=self.setup.start, reference=posture))
+        elif self.setup.torque:
+            tasks.append(tope.Damping())  # velocities of least norm are at rest by themselves
+        for level, task in enumerate(tasks, start=1):
             self.controller.add(task, level=level)
         self.t, self.dt = 0.0, dt
 

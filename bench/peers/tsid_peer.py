@@ -79,10 +79,11 @@ class Tsid(Peer):
         return task
 
     def add_posture(self) -> None:
-        """The start's posture."""
+        """The start's posture, or rest."""
         n = len(self.setup.start)
         task = tsid.TaskJointPosture("posture", self.robot)
-        task.setKp(self.setup.posture_gain**2 * np.ones(n))
+        stiffness = 0.0 if self.setup.lowest == "rest" else self.setup.posture_gain**2
+        task.setKp(stiffness * np.ones(n))
         task.setKd(2 * self.setup.posture_gain * np.ones(n))
         sample = tsid.TrajectorySample(n)
         sample.value(self.setup.start)
