@@ -57,9 +57,10 @@ MARGIN = 1e-3  # rad or m; what tope keeps from a limit by default
 DURATION = 8.0  # s
 SETTLED = 2e-4  # m and rad; a run that is so near ends
 CONTINUOUS = 8.0  # ratio of the largest jumps at dt and dt / 10 from which a command counts as continuous
+TOPE = (("tope", "unilateral"), ("tope", "tight"))
 PROGRAMS: Mapping[str, Sequence[tuple[str, str]]] = {
-    "velocity": (("tope", "unilateral"), ("tope", "chain"), ("pink", "default"), ("pink", "weights")),
-    "torque": (("tope", "unilateral"), ("tsid", "weights+torque-bounds")),
+    "velocity": (*TOPE, ("tope", "chain"), ("pink", "default"), ("pink", "weights")),
+    "torque": (*TOPE, ("tsid", "weights+torque-bounds")),
 }
 HEADER = (
     "robot",

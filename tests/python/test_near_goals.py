@@ -92,6 +92,7 @@ def test_pinocchio_and_tope_find_the_hand_at_the_goal(name, mode, tmp_path):
         q, pose = np.array(goal.q), setup.goals[f"goal_{number}"]
         pinocchio.framesForwardKinematics(model, data, configuration(model, q))
         there = data.oMf[frame]
+        assert closed_loop.errors(setup, f"goal_{number}", q)["position_error"] < 1e-9
         np.testing.assert_allclose(pose.position, there.translation, atol=1e-9)
         np.testing.assert_allclose(pose.rotation, there.rotation, atol=1e-9)
         controller = _core.Controller(robot, mode=mode, dt=1e-3)
