@@ -1,8 +1,8 @@
 """tope itself, through the loop that its peers go through. Configurations:
 
 unilateral, chain   ways to meet limits, with tope's defaults
-tight               `unilateral` with a margin of 0.1 mm or mrad, a tenth of the headroom and a lock of 0.02: it
-                    goes nearer to limits and gives weak directions to lower levels later, at steeper slopes
+tight               `unilateral` with a margin of 0.1 mm or mrad, a tenth of the headroom, a lock of 0.02:
+                    goes nearer to limits, gives weak directions to lower levels later, at steeper slopes
 
 Settings: orientation in level 1, position in level 2, posture in level 3; where the joints are to rest, no
 posture, and damping in torque mode.
