@@ -74,6 +74,7 @@ HEADER = (
     "0.1 ms",
     "ratio",
     f"ratio ≥ {CONTINUOUS:g}",
+    "largest jump of all",
     "failed cycles, runs",
 )
 
@@ -276,6 +277,7 @@ def summary(job: Job, found: Mapping[str, Any]) -> tuple[str, ...]:
         fine_jump,
         f"{median(ratios):.1f}",
         f"{sum(ratio >= CONTINUOUS for ratio in ratios)} of {len(pairs)}",
+        f"{100 * max(run['jump'] for run in coarse.values()):.3g} %",
         f"{failures}, {failed} of {count}" if failures else "0",
     )
 
@@ -301,7 +303,7 @@ def main() -> None:
     """Draw the goals, run every program on every robot, write the page."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--count", type=int, default=100, help="goals of each robot")
-    parser.add_argument("--fine", type=int, default=8, help="how many of them at a tenth of the period too")
+    parser.add_argument("--fine", type=int, default=6, help="how many of them at a tenth of the period too")
     parser.add_argument("--posture", type=int, default=20, help="how many of them with a posture as well")
     parser.add_argument("--robots", nargs="+", default=list(SCENARIOS), choices=SCENARIOS)
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="programs at a time")

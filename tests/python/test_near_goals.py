@@ -143,7 +143,7 @@ def test_the_summary_counts(tmp_path):
             run | {"goal": "goal_1", "position_error": 4e-3, "failures": 3},
             run | {"goal": "goal_1", "position_error": 4e-3, "dt": 1e-4, "jump": 0.01, "violation": 2e-5},
             run | {"goal": "goal_2", "position_error": 0.0, "orientation_error": 2e-3},
-            run | {"goal": "goal_3", "position_error": 0.0},
+            run | {"goal": "goal_3", "position_error": 0.0, "jump": 0.03},
         ]
     }
     row = dict(zip(near_goals.HEADER, near_goals.summary(job, found), strict=True))
@@ -159,5 +159,6 @@ def test_the_summary_counts(tmp_path):
         "0.1 ms": "0.6 %",
         "ratio": "6.0",
         "ratio ≥ 8": "1 of 2",
+        "largest jump of all": "3 %",
         "failed cycles, runs": "3, 1 of 4",
     }
