@@ -237,14 +237,15 @@ def table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 
 def tables(found: Found) -> str:
-    """The page's part: by mode all figures, and what a posture below changes; what was not measured."""
+    """The page's part: goals reached and all figures by mode; what was not measured."""
     measured = [(job, each) for job, each in found if "absent" not in each]
     parts = []
     for mode in PROGRAMS:
         some = [(job, each) for job, each in measured if job.program.mode == mode]
+        parts.append(f"## {mode.capitalize()} mode\n\nGoals reached:\n\n{reached(some, 'rest')}")
+        parts.append(f"With a posture below:\n\n{reached(some, 'posture')}")
         rows = [summary(job, each) for job, each in some if job.lowest == "rest"]
-        parts.append(f"## {mode.capitalize()} mode\n\n{table(HEADER, rows)}")
-        parts.append(f"Reached with a posture below:\n\n{with_posture(some)}")
+        parts.append(f"All figures, without a posture:\n\n{table(HEADER, rows)}")
     for job, each in found:
         if "absent" in each:
             parts.append(f"Not measured: {job.robot}, {job.library}: {each['absent']}.")
@@ -287,16 +288,21 @@ def miss(run: Mapping[str, Any]) -> float:
     return float(max(run["position_error"], run["orientation_error"]))
 
 
-def with_posture(found: Found) -> str:
-    """Goals reached where the last task is a posture: a row a robot, a column a library."""
-    cells: dict[str, dict[str, str]] = {}
+def reached(found: Found, lowest: str) -> str:
+    """Goals reached with that last task: a row a robot, a column a library."""
+    counts: dict[str, dict[str, np.ndarray]] = {"all": {}}  # reached, of so many
     for job, each in found:
-        if job.lowest == "posture":
-            reached = sum(miss(run) < peers.REACHED for run in each["runs"])
-            cells.setdefault(job.robot, {})[job.library] = f"{reached} of {len(job.goals)}"
-    libraries = list(dict.fromkeys(library for row in cells.values() for library in row))
-    rows = [(robot, *(row.get(library, "-") for library in libraries)) for robot, row in cells.items()]
-    return table(("robot", *libraries), rows)
+        if job.lowest == lowest:
+            runs = [run for run in each["runs"] if run["dt"] == scenario.DT]
+            count = np.array([sum(miss(run) < peers.REACHED for run in runs), len(runs)])
+            counts.setdefault(job.robot, {})[job.library] = count
+            counts["all"][job.library] = counts["all"].get(job.library, 0) + count
+    counts["all"] = counts.pop("all")  # last
+    rows = []
+    for robot, by_library in counts.items():
+        cells = (by_library.get(library) for library in counts["all"])
+        rows.append((robot, *("-" if cell is None else f"{cell[0]} of {cell[1]}" for cell in cells)))
+    return table(("robot", *counts["all"]), rows)
 
 
 def main() -> None:

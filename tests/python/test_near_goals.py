@@ -146,6 +146,12 @@ def test_the_summary_counts(tmp_path):
             run | {"goal": "goal_3", "position_error": 0.0, "jump": 0.03},
         ]
     }
+    other = near_goals.Job("leg", "rest", program, goals, tmp_path)
+    assert near_goals.reached([(job, found), (other, found)], "rest").splitlines()[2:] == [
+        "| arm | 2 of 4 |",
+        "| leg | 2 of 4 |",
+        "| all | 4 of 8 |",
+    ]
     row = dict(zip(near_goals.HEADER, near_goals.summary(job, found), strict=True))
     assert row == {
         "robot": "arm",
