@@ -112,6 +112,11 @@ peers: build
 bench-peers: build
 	$(BIN)/tope bench --peers --json runs/bench-peers.json --markdown README.md --markdown docs/peers.md
 
+# Goals beside a limit on six robots, by tope, Pink and tsid (make peers): docs/near-goals.md. A quarter of an hour.
+.PHONY: near-goals
+near-goals: build
+	$(BIN)/python bench/near_goals.py --page
+
 # How a cycle's cost grows with joints, limits in transition and levels: docs/scaling.md. Two minutes.
 .PHONY: scaling
 scaling: build

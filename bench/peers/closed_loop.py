@@ -19,12 +19,13 @@ import numpy as np
 from geometry import Joint, Pose, forward, rotation_angle
 
 FINE = 10  # the continuity of a command is judged by cycles so many times shorter
-NAMED = ("near", "main")  # goals that are timed, and run with the short cycle too
+NAMED = ("near", "main")  # goals of the benchmark beside the random ones
 GIVE_UP = 0.2  # s of failures in a row after which a run ends
 NEAR = (
     0.75  # rad; a target turned as far asks for no more than the joints' speed, which a constraint must not
 )
 ORIENTATION_WEIGHT = 1e4  # beside 1 of the position, where weights stand for levels; a cost is its root
+CHECK = 0.05  # s, between looks whether a run has settled
 BRAKING = 50.0  # rad/s2 or m/s2; how joints stop where a torque controller fails
 
 
@@ -44,6 +45,7 @@ class Setup:
     repeats: int = 1
     gain: float = 0.0  # 1/s
     posture_gain: float = 0.0  # 1/s
+    lowest: str = "posture"  # the last task: towards the start, or `rest`
     limit_gain: float = 0.0  # 1/s
     start: np.ndarray = field(default_factory=lambda: np.zeros(0))  # m and rad, as are the limits
     lower: np.ndarray = field(default_factory=lambda: np.zeros(0))
@@ -54,6 +56,14 @@ class Setup:
     joints: list[Joint] = field(default_factory=list)
     tip: Pose = field(default_factory=lambda: Pose(np.eye(3), np.zeros(3)))
     goals: dict[str, Pose] = field(default_factory=dict)
+    starts: dict[str, np.ndarray] = field(default_factory=dict)  # by goal, where each has its own
+    chain: np.ndarray | slice = field(default_factory=lambda: slice(None))  # which of the joints move the tip
+    fine: tuple[str, ...] = NAMED  # goals that are run with the short cycle too, and timed if there are any
+    settled: float = 0.0  # m and rad; a run ends early once both errors are smaller
+
+    def tip_at(self, q: np.ndarray) -> Pose:
+        """Pose of the end-effector."""
+        return forward(self.joints, self.tip, q[self.chain])
 
     @property
     def torque(self) -> bool:
@@ -77,14 +87,20 @@ def read(file: Path) -> Setup:
             setup.joints.append(Joint(values[0], prismatic, axis, rotation.reshape(3, 3), position))
         elif key == "goal":
             setup.goals[values[0]] = read_pose(values[1:])
+        elif key == "start_of":
+            setup.starts[values[0]] = np.array(values[1:], dtype=float)
         elif key == "tip":
             setup.tip = read_pose(values)
-        elif key in ("urdf", "config", "mode"):
+        elif key in ("urdf", "config", "mode", "lowest"):
             setattr(setup, key, values[0])
         elif key == "repeats":
             setup.repeats = int(values[0])
-        elif key in ("dt", "duration", "gain", "posture_gain", "limit_gain"):
+        elif key in ("dt", "duration", "gain", "posture_gain", "limit_gain", "settled"):
             setattr(setup, key, float(values[0]))
+        elif key == "fine":
+            setup.fine = tuple(values)
+        elif key == "chain":
+            setup.chain = np.array(values, dtype=int)
         else:
             setattr(setup, key, np.array(values, dtype=float))
     return setup
@@ -136,6 +152,7 @@ def run(
     failing = 0
     cycle = 0
     peer.start(setup.goals[goal], dt)
+    check = round(CHECK / dt)
     while cycle < cycles and failing * dt < GIVE_UP:
         peer.prepare(q)
         begin = time.perf_counter_ns()
@@ -161,6 +178,8 @@ def run(
             v = v + a * dt
         positions[cycle], velocities[cycle], commands[cycle] = q, v, u
         cycle += 1
+        if cycle % check == 0 and max(errors(setup, goal, q).values()) < setup.settled:
+            break
     done = slice(cycle)
     return {
         "goal": goal,
@@ -168,7 +187,7 @@ def run(
         "cycles": cycle,
         "failures": int(np.sum(~answered[done])),
         "reasons": reasons,
-        "gave_up": cycle < cycles,
+        "gave_up": failing * dt >= GIVE_UP,
         **measured(setup, positions[done], velocities[done], commands[done], answered[done]),
         **errors(setup, goal, q),
     }, times[done]
@@ -191,7 +210,7 @@ def measured(
 
 def errors(setup: Setup, goal: str, q: np.ndarray) -> dict[str, float]:
     """How far the end-effector is from the goal [m and rad]."""
-    there, wanted = forward(setup.joints, setup.tip, q), setup.goals[goal]
+    there, wanted = setup.tip_at(q), setup.goals[goal]
     return {
         "position_error": float(np.linalg.norm(wanted.position - there.position)),
         "orientation_error": rotation_angle(there.rotation.T @ wanted.rotation),
@@ -202,10 +221,12 @@ def measure(peer: Peer, setup: Setup, plant: Plant | None = None) -> dict[str, A
     """All runs of a peer, and the cost of its cycle along those towards the named goals."""
     runs, times = [], []
     for goal in setup.goals:
+        setup.start = setup.starts.get(goal, setup.start)
         done, cost = run(peer, setup, goal, setup.dt, plant)
         runs.append(done)
-        if goal in NAMED:
+        if goal in (setup.fine or setup.goals):
             times.append(cost)
+        if goal in setup.fine:
             runs.append(run(peer, setup, goal, setup.dt / FINE, plant)[0])
     p50, p99 = np.percentile(np.concatenate(times), [50, 99])
     return {

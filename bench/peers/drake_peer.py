@@ -14,7 +14,7 @@ import logging
 
 import numpy as np
 from closed_loop import NoCommandError, Peer, Setup, main
-from geometry import Pose, forward, log3
+from geometry import Pose, log3
 from pydrake.common.value import Value
 from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.multibody.inverse_kinematics import (
@@ -60,7 +60,7 @@ class Function(Peer):
 
     def prepare(self, q: np.ndarray) -> None:
         """The twist towards the goal."""
-        here = forward(self.setup.joints, self.setup.tip, q)
+        here = self.setup.tip_at(q)
         turn = here.rotation @ log3(here.rotation.T @ self.goal.rotation)
         self.twist = self.setup.gain * np.concatenate([turn, self.goal.position - here.position])
 

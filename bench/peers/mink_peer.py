@@ -16,7 +16,7 @@ import mink
 import mujoco
 import numpy as np
 from closed_loop import NEAR, ORIENTATION_WEIGHT, Peer, Setup, main
-from geometry import Pose, forward, towards
+from geometry import Pose, towards
 
 POSTURE_COST = 1e-3
 PRIORITIES = {
@@ -79,7 +79,7 @@ class Mink(Peer):
     def prepare(self, q: np.ndarray) -> None:
         """A target that is near enough for a constraint."""
         if self.constraints is not None:
-            here = forward(self.setup.joints, self.setup.tip, q).rotation
+            here = self.setup.tip_at(q).rotation
             turned = mink.SO3.from_matrix(towards(here, self.goal.rotation, NEAR))
             target = mink.SE3.from_rotation_and_translation(turned, self.goal.position)
             self.constraints[0].set_target(target)

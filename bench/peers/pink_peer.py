@@ -16,7 +16,7 @@ import numpy as np
 import pink
 import pinocchio
 from closed_loop import NEAR, ORIENTATION_WEIGHT, Peer, Setup, main
-from geometry import Pose, forward, towards
+from geometry import Pose, towards
 from pink.limits import ConfigurationLimit, VelocityLimit
 from pink.tasks import FrameTask, PostureTask
 
@@ -67,7 +67,8 @@ class Pink(Peer):
             orientation_cost = 0.0
         task = FrameTask("ee", position_cost=1.0, orientation_cost=orientation_cost, gain=part)
         task.set_target(target)
-        posture = PostureTask(cost=POSTURE_COST, gain=self.setup.posture_gain * dt)
+        posture_gain = 0.0 if self.setup.lowest == "rest" else self.setup.posture_gain
+        posture = PostureTask(cost=POSTURE_COST, gain=posture_gain * dt)
         posture.set_target(self.setup.start)
         self.tasks = [task, posture]
         self.limits = None  # its own: both kinds, gain 0.5 a cycle
@@ -78,7 +79,7 @@ class Pink(Peer):
     def prepare(self, q: np.ndarray) -> None:
         """A target that is near enough for a constraint."""
         if self.constraints is not None:
-            here = forward(self.setup.joints, self.setup.tip, q).rotation
+            here = self.setup.tip_at(q).rotation
             target = pinocchio.SE3(towards(here, self.goal.rotation, NEAR), self.goal.position)
             self.constraints[0].set_target(target)
 

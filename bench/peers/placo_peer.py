@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 import placo
 from closed_loop import NEAR, ORIENTATION_WEIGHT, Peer, Setup, main
-from geometry import Pose, exp3, forward, log3, towards
+from geometry import Pose, exp3, log3, towards
 
 REGULARISATION = 1e-3
 POSTURE_WEIGHT = 1e-6
@@ -60,7 +60,7 @@ class Placo(Peer):
 
     def prepare(self, q: np.ndarray) -> None:
         """The targets, one cycle ahead."""
-        here = forward(self.setup.joints, self.setup.tip, q)
+        here = self.setup.tip_at(q)
         part = self.setup.gain * self.dt
         wanted = towards(here.rotation, self.goal.rotation, NEAR) if self.hard else self.goal.rotation
         self.next = Pose(

@@ -1,7 +1,7 @@
 """Writes the scenario that tope and its peers are measured in: one file that all of their programs read.
 
-The youBot of robots/youbot, its gripper closed, its base blocked by an obstacle at x = 0.35 m. Its URDF
-is written anew without what only some peers read: shapes, friction, a joint without an end. Rotor
+The youBot of robots/youbot, its gripper closed, its base blocked by an obstacle at x = 0.35 m. A robot's
+URDF is written anew without what only some peers read: shapes, friction, a joint without an end. Rotor
 inertias, which a URDF cannot say, go into the scenario.
 
 Each line of the file is a key and its values: see Setup in closed_loop.py.
@@ -12,7 +12,7 @@ from __future__ import annotations
 import argparse
 import re
 import xml.etree.ElementTree as ET
-from collections.abc import Iterable
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -35,48 +35,69 @@ GOALS = 200
 SEED = 42
 WHEELS = 4
 
+ZEROS = "0 0 0"  # what a URDF leaves out
+
+Line = tuple[str, Iterable[object]]  # a key and its values
+
 
 def write(folder: Path, mode: str, goals: int, repeats: int) -> Path:
     """Write the scenario of a mode and the robot's files to a folder; give the scenario's file."""
     robot = ET.parse(ROBOT / "youbot.urdf").getroot()
-    plain(robot)
-    urdf = folder / "youbot.urdf"
-    ET.ElementTree(robot).write(urdf)
+    plain(robot, locked=("gripper_finger_joint_l", "gripper_finger_joint_r"))
+    robot.find("joint[@name='base_x']/limit").set("upper", str(OBSTACLE))
     joints, tip = chain(robot)
     inertia = rotor_inertia((ROBOT / "youbot.yaml").read_text(encoding="utf-8"))
-    config = folder / "youbot.yaml"
-    entries = ", ".join(f"{joint.name}: {inertia[joint.name]!r}" for joint in joints)
+    lines: list[Line] = [("duration", [DURATION[mode]]), ("repeats", [repeats]), ("start", START)]
+    lines += [goal_line(*goal) for goal in targets(forward(joints, tip, START), goals).items()]
+    return write_scenario(folder, mode, robot, [joint.name for joint in joints], inertia=inertia, more=lines)
+
+
+def write_scenario(
+    folder: Path,
+    mode: str,
+    robot: ET.Element,
+    names: Sequence[str],
+    *,
+    inertia: Mapping[str, float],
+    more: Iterable[Line],
+) -> Path:
+    """Write a plain robot and a scenario of it, its joints ordered as `names`."""
+    urdf = folder / f"{robot.get('name')}.urdf"
+    ET.ElementTree(robot).write(urdf)
+    config = folder / f"{robot.get('name')}.yaml"
+    entries = ", ".join(f"{name}: {inertia[name]!r}" for name in names if name in inertia)
     config.write_text(f"rotor_inertia: {{{entries}}}\n", encoding="utf-8")
 
     def limits(key: str) -> list[float]:
-        return [float(robot.find(f"joint[@name='{joint.name}']/limit").get(key)) for joint in joints]
+        return [float(robot.find(f"joint[@name='{name}']/limit").get(key)) for name in names]
 
-    lines: list[tuple[str, Iterable[object]]] = [
+    lines: list[Line] = [
         ("urdf", [urdf.resolve()]),
         ("config", [config.resolve()]),
         ("mode", [mode]),
         ("dt", [DT]),
-        ("duration", [DURATION[mode]]),
-        ("repeats", [repeats]),
         ("gain", [GAIN]),
         ("posture_gain", [POSTURE_GAIN]),
         ("limit_gain", [LIMIT_GAIN]),
-        ("start", START),
         ("lower", limits("lower")),
         ("upper", limits("upper")),
         ("velocity", limits("velocity")),
         ("effort", limits("effort")),
-        ("rotor_inertia", [inertia[joint.name] for joint in joints]),
+        ("rotor_inertia", [inertia.get(name, 0.0) for name in names]),
     ]
+    joints, tip = chain(robot)
     for joint in joints:
         kind = "prismatic" if joint.prismatic else "revolute"
         lines.append(("joint", [joint.name, kind, *joint.axis, *joint.rotation.flat, *joint.position]))
     lines.append(("tip", [*tip.rotation.flat, *tip.position]))
-    for name, goal in targets(forward(joints, tip, START), goals).items():
-        lines.append(("goal", [name, *goal.rotation.flat, *goal.position]))
     file = folder / f"{mode}.txt"
-    file.write_text("".join(" ".join([key, *map(text, values)]) + "\n" for key, values in lines))
+    file.write_text("".join(" ".join([key, *map(text, values)]) + "\n" for key, values in [*lines, *more]))
     return file
+
+
+def goal_line(name: str, goal: Pose) -> Line:
+    """A goal as a scenario tells it."""
+    return "goal", [name, *goal.rotation.flat, *goal.position]
 
 
 def text(value: object) -> str:
@@ -84,30 +105,33 @@ def text(value: object) -> str:
     return repr(float(value)) if isinstance(value, (float, np.floating)) else str(value)
 
 
-def plain(robot: ET.Element) -> None:
-    """Change the URDF to what every peer reads alike, with the obstacle."""
-    for link in robot.iter("link"):
-        for shape in [*link.findall("visual"), *link.findall("collision")]:
-            link.remove(shape)
-    for joint in robot.iter("joint"):
-        for dynamics in joint.findall("dynamics"):
-            joint.remove(dynamics)
+def plain(robot: ET.Element, locked: Collection[str]) -> None:
+    """Change the URDF to what every peer reads alike; `locked` joints, not of the chain, stand at zero."""
+    remove(robot, lambda part: part.tag not in ("link", "joint"))
+    for link in robot.findall("link"):
+        remove(link, lambda part: part.tag in ("visual", "collision"))
+    for joint in robot.findall("joint"):
+        remove(joint, lambda part: part.tag in ("dynamics", "mimic"))
         limit = joint.find("limit")
-        if joint.get("name", "").startswith("gripper_finger"):  # closed: robots/youbot/youbot.yaml
+        if joint.get("name") in locked:
             joint.set("type", "fixed")
         elif joint.get("type") == "continuous":
             joint.set("type", "revolute")
             limit.attrib |= {"lower": str(-FAR), "upper": str(FAR)}
-        elif joint.get("name") == "base_x":
-            limit.set("upper", str(OBSTACLE))
-    robot.set("name", "youbot")
     mujoco = ET.SubElement(robot, "mujoco")  # read by MuJoCo alone: keeps the frame `ee`
     ET.SubElement(mujoco, "compiler", {"fusestatic": "false"})
 
 
+def remove(element: ET.Element, unwanted: Callable[[ET.Element], bool]) -> None:
+    """Take the unwanted parts out of an element."""
+    for part in list(element):
+        if unwanted(part):
+            element.remove(part)
+
+
 def chain(robot: ET.Element) -> tuple[list[Joint], Pose]:
     """The moving joints up to the frame `ee`, and the frame's pose in the last one."""
-    parents = {joint.find("child").get("link"): joint for joint in robot.iter("joint")}
+    parents = {joint.find("child").get("link"): joint for joint in robot.findall("joint")}
     path: list[ET.Element] = []
     link = "ee"
     while link in parents:
@@ -116,9 +140,9 @@ def chain(robot: ET.Element) -> tuple[list[Joint], Pose]:
     joints: list[Joint] = []
     rotation, position = np.eye(3), np.zeros(3)
     for joint in path:
-        origin = joint.find("origin")
-        position = position + rotation @ numbers(origin.get("xyz"))
-        rotation = rotation @ rotation_of_rpy(*numbers(origin.get("rpy")))
+        origin = {"xyz": ZEROS, "rpy": ZEROS} | getattr(joint.find("origin"), "attrib", {})
+        position = position + rotation @ numbers(origin["xyz"])
+        rotation = rotation @ rotation_of_rpy(*numbers(origin["rpy"]))
         if joint.get("type") != "fixed":
             prismatic = joint.get("type") == "prismatic"
             axis = numbers(joint.find("axis").get("xyz"))

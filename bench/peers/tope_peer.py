@@ -1,7 +1,11 @@
-"""tope itself, through the loop that its peers go through. Configurations: ways to meet limits,
-`unilateral`, `chain`.
+"""tope itself, through the loop that its peers go through. Configurations:
 
-Settings: tope's defaults. Orientation in level 1, position in level 2, posture in level 3.
+unilateral, chain   ways to meet limits, with tope's defaults
+tight               `unilateral` with a margin of 0.1 mm or mrad, a tenth of the headroom, a lock of 0.02:
+                    goes nearer to limits, gives weak directions to lower levels later, at steeper slopes
+
+Settings: orientation in level 1, position in level 2, posture in level 3; where the joints are to rest, no
+posture, and damping in torque mode.
 """
 
 from __future__ import annotations
@@ -18,28 +22,34 @@ class Tope(Peer):
 
     package = "tope"
     priorities = "strict levels"
-    settings = "defaults"
 
     def __init__(self, setup: Setup, configuration: str) -> None:
         self.setup = setup
         self.robot = tope.Robot.from_urdf(setup.urdf, setup.config)
-        self.limits = tope.LimitOptions(method=configuration)
+        self.limits = tope.LimitOptions(method=configuration) if configuration != "tight" else self.tight()
+        self.settings = "defaults" if configuration != "tight" else "margin 1e-4, headroom a tenth, lock 0.02"
         self.controller: tope.Controller
         self.t = 0.0
+
+    def tight(self) -> tope.LimitOptions:
+        """Nearer to limits than by default, at steeper slopes."""
+        headroom = 0.05 if self.setup.torque else 0.001  # rad/s2 or rad/s: a tenth of the default
+        return tope.LimitOptions(margin=1e-4, unilateral=tope.UnilateralOptions(headroom=headroom, lock=0.02))
 
     def start(self, goal: Pose, dt: float) -> None:
         """Begin anew."""
         reference = tope.Exponential(gain=self.setup.gain)
-        posture = tope.Exponential(gain=self.setup.posture_gain)
         self.controller = tope.Controller(self.robot, mode=self.setup.mode, dt=dt, limits=self.limits)
-        for level, task in enumerate(
-            (
-                tope.FrameOrientation(frame="ee", target=goal.rotation, reference=reference),
-                tope.FramePosition(frame="ee", target=goal.position, reference=reference),
-                tope.Posture(target=self.setup.start, reference=posture),
-            ),
-            start=1,
-        ):
+        tasks = [
+            tope.FrameOrientation(frame="ee", target=goal.rotation, reference=reference),
+            tope.FramePosition(frame="ee", target=goal.position, reference=reference),
+        ]
+        if self.setup.lowest == "posture":
+            posture = tope.Exponential(gain=self.setup.posture_gain)
+            tasks.append(tope.Posture(target=self.setup.start, reference=posture))
+        elif self.setup.torque:
+            tasks.append(tope.Damping())  # velocities of least norm are at rest by themselves
+        for level, task in enumerate(tasks, start=1):
             self.controller.add(task, level=level)
         self.t, self.dt = 0.0, dt
 

@@ -17,7 +17,7 @@ from __future__ import annotations
 import numpy as np
 import tsid
 from closed_loop import NEAR, ORIENTATION_WEIGHT, NoCommandError, Peer, Setup, main
-from geometry import Pose, forward, towards
+from geometry import Pose, towards
 from rigid_body import RigidBody
 
 ACCELERATION = {
@@ -79,10 +79,11 @@ class Tsid(Peer):
         return task
 
     def add_posture(self) -> None:
-        """The start's posture."""
+        """The start's posture, or rest."""
         n = len(self.setup.start)
         task = tsid.TaskJointPosture("posture", self.robot)
-        task.setKp(self.setup.posture_gain**2 * np.ones(n))
+        stiffness = 0.0 if self.setup.lowest == "rest" else self.setup.posture_gain**2
+        task.setKp(stiffness * np.ones(n))
         task.setKd(2 * self.setup.posture_gain * np.ones(n))
         sample = tsid.TrajectorySample(n)
         sample.value(self.setup.start)
@@ -109,7 +110,7 @@ class Tsid(Peer):
     def prepare(self, q: np.ndarray) -> None:
         """A target that is near enough for a constraint."""
         if self.constrained:
-            here = forward(self.setup.joints, self.setup.tip, q).rotation
+            here = self.setup.tip_at(q).rotation
             turned = towards(here, self.goal.rotation, NEAR)
             self.orientation.setReference(sample_of(turned, self.goal.position))
 

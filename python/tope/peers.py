@@ -145,7 +145,13 @@ def measure_peers(goals: int = GOALS, progress: Progress | None = None) -> list[
 
 
 def measure(program: Program, scenario: Path) -> dict[str, Any]:
-    """What a program measured, or why there is nothing."""
+    """What a program measured in the benchmark's scenario, summed up, or why there is nothing."""
+    found = run(program, scenario)
+    return found if "absent" in found else collected(found)
+
+
+def run(program: Program, scenario: Path) -> dict[str, Any]:
+    """What a program measured in a scenario, run by run, or why there is nothing."""
     about = {
         "name": program.name,
         "language": program.language,
@@ -170,7 +176,7 @@ def measure(program: Program, scenario: Path) -> dict[str, Any]:
     if done.returncode != 0:
         said = done.stderr.strip().splitlines() or ["it said nothing"]
         return about | {"absent": f"ended with code {done.returncode}: {said[-1][:200]}"}
-    return about | collected(json.loads(done.stdout.strip().splitlines()[-1]))
+    return about | dict(json.loads(done.stdout.strip().splitlines()[-1]))
 
 
 def collected(measured: Mapping[str, Any]) -> dict[str, Any]:
