@@ -223,8 +223,8 @@ double full_speed_drift(const Robot& robot, CollisionLimits& collisions) {
   double largest = 0.0;
   for (int k = 0; k < sampled_poses; ++k) {
     Vector v = robot.velocity_limit();
-    for (int j = 0; j < robot.nv(); ++j) {
-      v[j] *= (k >> (j % 8)) % 2 == 0 ? 1.0 : -1.0;  // every pattern of signs in turn, up to eight joints
+    for (unsigned j = 0; j < v.size(); ++j) {  // every pattern of signs in turn, of up to eight joints
+      v[j] *= (static_cast<unsigned>(k) >> (j % 8U)) % 2U == 0U ? 1.0 : -1.0;
     }
     terms.update_dynamics(sampled_pose(robot, k), v);
     collisions.update_second_order(terms);
