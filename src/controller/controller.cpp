@@ -118,6 +118,7 @@ Controller::Controller(const Robot& robot, const ControllerOptions& options)
       authority_(torque_mode() ? braking_authority(robot_) : Vector()),
       limits_(robot_, with_gain(robot_, options_, authority_)),
       collisions_(make_collisions(robot_, options_.limits, limits_)),
+      full_speed_drift_(collisions_ && !torque_mode() ? tope::full_speed_drift(robot_, *collisions_) : 0.0),
       whitening_(torque_mode() ? Whitening::torque(robot_.nv())
                                : Whitening::velocity(command_weight(robot_, options_.joint_weights))),
       stack_(robot_.nv(), collisions_ ? collisions_->size() : 0),
@@ -169,8 +170,9 @@ std::vector<Condition> Controller::conditions() const {
       torque_mode() ? torque_conditions(robot_, limits_, method, headroom, options_.dt, authority_)
                     : velocity_conditions(robot_, limits_, method, headroom, options_.dt);
   if (collisions_) {
-    const std::vector<Condition> more = torque_mode() ? torque_conditions(*collisions_, limits_, options_.dt)
-                                                      : velocity_conditions(*collisions_, options_.dt);
+    const std::vector<Condition> more =
+        torque_mode() ? torque_conditions(*collisions_, limits_, options_.dt)
+                      : velocity_conditions(*collisions_, full_speed_drift_, options_.dt);
     conditions.insert(conditions.end(), more.begin(), more.end());
   }
   return conditions;

@@ -146,6 +146,7 @@ struct CollisionLimits::Geometry {
     std::size_t ball;
     std::size_t body;
     Vector3 normal = Vector3::Zero();
+    Vector3 drift = Vector3::Zero();
   };
 
   std::vector<Ball> balls;
@@ -303,17 +304,16 @@ void CollisionLimits::update_second_order(const RobotTerms& terms) {
     body.move(terms);
   }
   for (std::size_t i = 0; i < geometry_->pairs.size(); ++i) {
-    const Geometry::Pair& pair = geometry_->pairs[i];
+    Geometry::Pair& pair = geometry_->pairs[i];
     const Geometry::Ball& ball = geometry_->balls[pair.ball];
     const Geometry::Body& body = geometry_->bodies[pair.body];
     const Vector3 arm = ball.position - body.origin;
     const Vector3 relative = ball.velocity - velocity_at(body.twist, arm);
     const Vector3 omega = body.twist.tail<3>();
-    const Vector3 drift =
-        ball.drift - acceleration_at(body.twist, body.drift, arm) - 2.0 * omega.cross(relative);
+    pair.drift = ball.drift - acceleration_at(body.twist, body.drift, arm) - 2.0 * omega.cross(relative);
     const auto row = static_cast<Eigen::Index>(i);
     motion_lower_[row] = -(gain_ + servo_gain_) * pair.normal.dot(relative) -
-                         gain_ * servo_gain_ * (distance_[row] - margin_) - pair.normal.dot(drift);
+                         gain_ * servo_gain_ * (distance_[row] - margin_) - pair.normal.dot(pair.drift);
   }
 }
 
@@ -327,6 +327,14 @@ int CollisionLimits::pressed_by(const VectorArg& motion, double slack) const {
     }
   }
   return pressed;
+}
+
+double CollisionLimits::drift() const {
+  double largest = 0.0;
+  for (const Geometry::Pair& pair : geometry_->pairs) {
+    largest = std::max(largest, pair.drift.norm());
+  }
+  return largest;
 }
 
 int CollisionLimits::inside() const {

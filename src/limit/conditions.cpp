@@ -1,6 +1,9 @@
 #include <tope/limit/conditions.hpp>
+#include <tope/robot/sampled_pose.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace tope {
@@ -236,8 +239,38 @@ std::vector<Condition> torque_conditions(const Robot& robot, const JointLimits& 
   return conditions;
 }
 
-std::vector<Condition> velocity_conditions(const CollisionLimits& collisions, double dt) {
-  return {servo_is_stable("distance", "collisions", collisions.gain(), dt)};
+double full_speed_drift(const Robot& robot, CollisionLimits& collisions) {
+  if (!robot.velocity_limit().allFinite()) {
+    return std::numeric_limits<double>::infinity();
+  }
+  RobotTerms terms(robot);
+  double largest = 0.0;
+  for (int k = 0; k < sampled_poses; ++k) {
+    Vector v = robot.velocity_limit();
+    for (unsigned j = 0; j < v.size(); ++j) {  // every pattern of signs in turn, of up to eight joints
+      v[j] *= (static_cast<unsigned>(k) >> (j % 8U)) % 2U == 0U ? 1.0 : -1.0;
+    }
+    terms.update_dynamics(sampled_pose(robot, k), v);
+    collisions.update_second_order(terms);
+    largest = std::max(largest, collisions.drift());
+  }
+  return largest;
+}
+
+std::vector<Condition> velocity_conditions(const CollisionLimits& collisions, double drift, double dt) {
+  const double bent = 0.5 * dt * drift / collisions.gain();
+  std::vector<Condition> conditions{servo_is_stable("distance", "collisions", collisions.gain(), dt)};
+  if (std::isfinite(drift)) {
+    conditions.push_back(
+        {.name = "margin covers a period",
+         .joint = "",
+         .expression = "dt * drift / (2 gain) <= margin, drift at full speed in the worst pose",
+         .value = bent,
+         .bound = collisions.margin(),
+         .advice = text("raise collisions.margin to at least ", bent, " m or lower dt to at most ",
+                        dt * collisions.margin() / bent, " s")});
+  }
+  return conditions;
 }
 
 /// All joints that slow down at their limits' gain slow every approach down at that gain, which is what their drives are

@@ -284,6 +284,10 @@ BOOST_AUTO_TEST_CASE(refuses_what_it_cannot_keep) {
   hard.limits.collisions->gain = 9.9;
   check_error([&] { const Controller controller(robot, hard); },
               {"drives strong enough for the distances", "lower collisions.gain"});
+  ControllerOptions thin = options(Mode::velocity, {});
+  thin.limits.collisions->margin = 1e-4;
+  check_error([&] { const Controller controller(robot, thin); },
+              {"margin covers a period", "raise collisions.margin to at least 0.000", "lower dt to at most"});
   const Controller plain(robot, {.mode = Mode::velocity});
   BOOST_TEST(plain.collisions() == nullptr);
 }

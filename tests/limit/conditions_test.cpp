@@ -2,6 +2,7 @@
 // driven at full speed stays inside at the longest period they allow. Not here: that a controller enforces
 // them (controller room).
 #include "support/robots.hpp"
+#include "support/text.hpp"
 
 #include <tope/limit/conditions.hpp>
 
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 namespace tope::test {
@@ -196,6 +198,27 @@ BOOST_AUTO_TEST_CASE(bounds_keep_a_joint_inside_at_the_longest_period) {
     limits.update(q);
     BOOST_TEST(q[kJoint] + limits.motion_upper()[kJoint] / limits.gain(kJoint) <= upper);
   }
+}
+
+/// A sphere at the end of a turning link of 0.5 m at 2 rad/s: the centripetal acceleration.
+BOOST_AUTO_TEST_CASE(drift_of_a_turning_link_is_centripetal) {
+  const TemporaryFile urdf("turn.urdf", R"(<robot name="turn"><link name="base"/><link name="link">
+    <inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+    <joint name="turn" type="continuous"><parent link="base"/><child link="link"/><axis xyz="0 0 1"/>
+    <limit effort="1" velocity="2"/></joint></robot>)");
+  Robot robot = Robot::from_urdf(urdf.path());
+  CollisionOptions options;
+  options.geometry.spheres = {
+      {.name = "tip", .frame = "link", .center = Vector3(0.3, 0.4, 0.7), .radius = 0.1}};
+  options.geometry.bodies = {
+      {.name = "ball", .shape = shape::Sphere{0.1}, .position = Vector3(2.0, 0.0, 0.0)}};
+  CollisionLimits collisions(robot, options, 10.0, 10.0);
+  BOOST_TEST(std::abs(full_speed_drift(robot, collisions) - 0.5 * 2.0 * 2.0) <= 1e-12);
+  const Condition margin = velocity_conditions(collisions, 2.0, 0.05).back();
+  BOOST_TEST(margin.value == 0.5 * 0.05 * 2.0 / 10.0);
+  BOOST_TEST(margin.bound == 0.01);
+  robot.set_velocity_limit(Vector::Constant(1, std::numeric_limits<double>::infinity()));
+  BOOST_TEST(velocity_conditions(collisions, full_speed_drift(robot, collisions), 0.05).size() == 1U);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

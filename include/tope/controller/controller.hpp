@@ -136,6 +136,7 @@ class Controller {
   Vector authority_;  // what each drive can brake with, torque mode (n)
   JointLimits limits_;
   std::optional<CollisionLimits> collisions_;
+  double full_speed_drift_;  // of the distances, velocity mode [m/s2]
   std::optional<PotentialField> field_;
   Whitening whitening_;
   std::vector<Entry> entries_;  // sorted by level

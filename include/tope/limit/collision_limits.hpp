@@ -72,7 +72,10 @@ class CollisionLimits {
   const Vector& motion_lower() const { return motion_lower_; }      ///< (p) [m/s or m/s2]
   double margin() const { return margin_; }                         ///< [m]
   double gain() const { return gain_; }                             ///< [1/s]
-  double servo_gain() const { return servo_gain_; }                 ///< [1/s]
+  /// Largest acceleration of a sphere relative to a body while the joints' velocities stay as they are, as of
+  /// update_second_order() [m/s2]: how far a distance can bend from its tangent.
+  double drift() const;
+  double servo_gain() const { return servo_gain_; }  ///< [1/s]
   /// Pair that a motion (nv) presses hardest, of those whose bounds are nearer than `slack` [m/s or m/s2]; -1: none.
   int pressed_by(const VectorArg& motion, double slack) const;
   /// Pair furthest inside its margin, or -1.

@@ -32,8 +32,13 @@ std::vector<Condition> velocity_conditions(const Robot& robot, const JointLimits
 std::vector<Condition> torque_conditions(const Robot& robot, const JointLimits& limits, LimitMethod method,
                                          const Vector& headroom, double dt, const Vector& authority);
 
-/// The inequalities of the distances to keep, beside those of the joints, in velocity mode and in torque mode.
-std::vector<Condition> velocity_conditions(const CollisionLimits& collisions, double dt);
+/// Largest CollisionLimits::drift() with all joints at full speed, in one direction or the other, over a thousand poses;
+/// infinite where a joint has no speed limit. Leaves the distances as they are in the last pose.
+double full_speed_drift(const Robot& robot, CollisionLimits& collisions);
+
+/// The inequalities of the distances to keep, beside those of the joints, in velocity mode (`drift` is
+/// full_speed_drift()) and in torque mode.
+std::vector<Condition> velocity_conditions(const CollisionLimits& collisions, double drift, double dt);
 std::vector<Condition> torque_conditions(const CollisionLimits& collisions, const JointLimits& limits,
                                          double dt);
 
