@@ -126,7 +126,8 @@ nb::dict describe_scenario(const Scenario& scenario) {
   entry["tasks"] = tasks;
   entry["notices"] = nb::cast(scenario.notices);
   if (const auto& collisions = scenario.controller.limits.collisions) {
-    const CollisionLimits distances(*scenario.robot, *collisions, limits.least_gain(), limits.options().servo_gain);
+    const CollisionLimits distances(*scenario.robot, *collisions, limits.least_gain(),
+                                    limits.options().servo_gain);
     entry["distances"] = nb::cast(distances.names());
     entry["obstacles"] = describe_obstacles(*collisions);
   }

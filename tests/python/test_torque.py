@@ -86,7 +86,9 @@ def test_zero_torque_null_space_is_the_papers_law(levels: int) -> None:
         q, v = random_state(random)
         terms = Terms(q, v)
         limits = tope.LimitOptions(method="none")
-        c = tope.Controller(robot, mode="torque", dt=1e-3, midpoint=False, limits=limits, null_space="zero_torque")
+        c = tope.Controller(
+            robot, mode="torque", dt=1e-3, midpoint=False, limits=limits, null_space="zero_torque"
+        )
         reference = tope.Exponential(gain=3.0)
         near = terms.data.oMf[terms.model.getFrameId("ee")].translation + random.uniform(-0.002, 0.002, 3)
         tasks = [terms.position_task("ee", near)]
@@ -115,7 +117,12 @@ def test_compensated_null_space_differs_by_the_projected_bias() -> None:
 
     def torque(null_space: str) -> np.ndarray:
         controller = tope.Controller(
-            robot, mode="torque", dt=1e-3, midpoint=False, limits=tope.LimitOptions(method="none"), null_space=null_space
+            robot,
+            mode="torque",
+            dt=1e-3,
+            midpoint=False,
+            limits=tope.LimitOptions(method="none"),
+            null_space=null_space,
         )
         task = tope.FramePosition(frame="ee", target=target, reference=tope.Exponential(gain=3.0))
         controller.add(task, level=1)
