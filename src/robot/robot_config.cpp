@@ -9,7 +9,11 @@
 namespace tope {
 namespace {
 
-const std::vector<std::string> base_types{"planar", "floating"};  // in the order of MovingBase::Type
+/// In the order of MovingBase::Type.
+const std::vector<std::string>& base_types() {
+  static const std::vector<std::string> names{"planar", "floating"};
+  return names;
+}
 
 std::map<std::string, double> positive_numbers(const YamlReader& yaml, const std::string& key) {
   std::map<std::string, double> values;
@@ -45,12 +49,12 @@ std::optional<double> positive_if_given(const YamlReader& yaml, const std::strin
 
 RobotConfig::MovingBase read_moving_base(const YamlReader& yaml) {
   const std::string type = yaml.text("type");
-  const auto found = std::find(base_types.begin(), base_types.end(), type);
-  if (found == base_types.end()) {
-    yaml.fail("type", "unknown type of base '" + type + "'" + name_hint(type, base_types));
+  const auto found = std::find(base_types().begin(), base_types().end(), type);
+  if (found == base_types().end()) {
+    yaml.fail("type", "unknown type of base '" + type + "'" + name_hint(type, base_types()));
   }
   RobotConfig::MovingBase base;
-  base.type = static_cast<RobotConfig::MovingBase::Type>(found - base_types.begin());
+  base.type = static_cast<RobotConfig::MovingBase::Type>(found - base_types().begin());
   base.speed = yaml.positive("speed");
   base.turn_rate = yaml.positive("turn_rate");
   base.force = positive_if_given(yaml, "force");
@@ -62,7 +66,7 @@ RobotConfig::MovingBase read_moving_base(const YamlReader& yaml) {
 }  // namespace
 
 std::string to_string(RobotConfig::MovingBase::Type type) {
-  return base_types[static_cast<std::size_t>(type)];
+  return base_types()[static_cast<std::size_t>(type)];
 }
 
 RobotConfig RobotConfig::from_yaml(const std::filesystem::path& file) {
