@@ -170,7 +170,9 @@ Condition drive_can_brake(const Robot& robot, const JointLimits& limits, LimitMe
 
 double braking_gain(const JointLimits& limits, LimitMethod method, int joint, double authority) {
   constexpr double share = 0.8;  // the rest is for speed-dependent forces and joints that brake at once
-  double gain = std::min(JointLimits::default_gain, limits.options().servo_gain);
+  constexpr double poles =
+      0.4;  // gain over servo_gain: closer, and a joint that presses on its limit shakes with friction
+  double gain = std::min(JointLimits::default_gain, poles * limits.options().servo_gain);
   if (!limits.limited(joint) || !(authority > 0.0)) {
     return gain;
   }

@@ -69,15 +69,14 @@ BOOST_AUTO_TEST_CASE(drives_must_be_able_to_brake) {
       BOOST_TEST(condition.holds(), condition.name << " " << condition.joint);
     }
   }
-  BOOST_TEST(braking_gain(JointLimits(robot, {}), LimitMethod::unilateral, kJoint, 1e4) ==
+  BOOST_TEST(braking_gain(JointLimits(robot, {.servo_gain = 100.0}), LimitMethod::unilateral, kJoint, 1e4) ==
              JointLimits::default_gain);
   BOOST_TEST(braking_gain(JointLimits(robot, {.servo_gain = 4.0}), LimitMethod::unilateral, kJoint, 1e4) ==
-             4.0);
-  BOOST_TEST(braking_gain(JointLimits(robot, {.buffer = 0.2}), LimitMethod::chain, kJoint, 1e4) ==
-             0.9 * v_max / 0.2);
+             1.6);
+  BOOST_TEST(braking_gain(JointLimits(robot, {.buffer = 0.5}), LimitMethod::chain, kJoint, 1e4) ==
+             0.9 * v_max / 0.5);
   const int yaw = robot.joint_index("base_yaw");  // without limits
-  BOOST_TEST(braking_gain(JointLimits(robot, {}), LimitMethod::unilateral, yaw, 1.0) ==
-             JointLimits::default_gain);
+  BOOST_TEST(braking_gain(JointLimits(robot, {}), LimitMethod::unilateral, yaw, 1.0) == 4.0);
 }
 
 BOOST_AUTO_TEST_CASE(headroom_suits_the_joint) {

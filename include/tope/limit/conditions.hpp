@@ -46,7 +46,7 @@ std::vector<Condition> torque_conditions(const CollisionLimits& collisions, cons
 /// [rad/s or m/s; of second order: per second more].
 double suitable_headroom(const JointLimits& limits, int joint, bool second_order, double most);
 
-/// Largest gain of a joint's limits [1/s], up to JointLimits::default_gain and the servo's, that leaves a fifth of what its
+/// Largest gain of a joint's limits [1/s], up to JointLimits::default_gain and 0.4 of the servo's, that leaves a fifth of what its
 /// drive can brake with (authority) unused and, for methods with rows, both rows idle at rest.
 double braking_gain(const JointLimits& limits, LimitMethod method, int joint, double authority);
 
