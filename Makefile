@@ -112,7 +112,7 @@ peers: build
 bench-peers: build
 	$(BIN)/tope bench --peers --json runs/bench-peers.json --markdown README.md --markdown docs/peers.md
 
-# Goals beside a limit on six robots, by tope, Pink and tsid (make peers): docs/near-goals.md. A quarter of an hour.
+# Goals beside a limit on six robots, by tope, Pink and tsid (make peers): docs/near-goals.md. Twenty minutes of one core.
 .PHONY: near-goals
 near-goals: build
 	$(BIN)/python bench/near_goals.py --page
