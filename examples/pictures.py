@@ -161,6 +161,16 @@ def safe_settings_and_status(example: Variables, axes: list[Axes]) -> None:
     axes[1].set_title("distance from the goal [m]; promised for 2 s")
 
 
+def distances(example: Variables, axes: list[Axes]) -> None:
+    """How near the robot comes, told of it and not."""
+    for place, what in enumerate(("the post", "the robot itself")):
+        for colour, (run, told) in enumerate({"kept": "told of it", "ignored": "not told"}.items()):
+            curve(axes[place], cycles(example[run]), 1e3 * example[run][:, place], colour, told)
+        axes[place].axhline(1e3 * example["margin"], **LIMIT)
+        axes[place].set_title(f"distance from {what} and its margin [mm]")
+    axes[0].legend()
+
+
 def printed_table(program: str) -> np.ndarray:
     """The lines of a program's output that are numbers alone."""
     text = subprocess.run([PROGRAMS / program], check=True, capture_output=True, text=True).stdout
