@@ -171,6 +171,21 @@ def distances(example: Variables, axes: list[Axes]) -> None:
     axes[0].legend()
 
 
+def another_robot(example: Variables, axes: list[Axes]) -> None:
+    """Which goals are reached, and the joints beside one's limit."""
+    for colour, (name, (_, _, error)) in enumerate(example["runs"].items()):
+        curve(axes[0], cycles(error), np.maximum(error, 1e-6), colour, name)
+    axes[0].set_yscale("log")
+    axes[0].set_title("distance from the goal [m]")
+    axes[0].legend()
+    robot, path, _ = example["runs"]["on a table, behind"]
+    span = robot.position_upper - robot.position_lower
+    joints(axes[1], (path - robot.position_lower) / span, robot.joint_names)
+    axes[1].axhline(0.0, **LIMIT)
+    axes[1].axhline(1.0, **LIMIT)
+    axes[1].set_title("joints on the table, shares of their ranges")
+
+
 def printed_table(program: str) -> np.ndarray:
     """The lines of a program's output that are numbers alone."""
     text = subprocess.run([PROGRAMS / program], check=True, capture_output=True, text=True).stdout
