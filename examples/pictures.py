@@ -186,6 +186,22 @@ def another_robot(example: Variables, axes: list[Axes]) -> None:
     axes[1].set_title("joints on the table, shares of their ranges")
 
 
+def targets_from_outside(example: Variables, axes: list[Axes]) -> None:
+    """Waypoints that are passed, and a command with and without a stream."""
+    t = cycles(example["planned"])
+    for axis, name in enumerate("xyz"):
+        curve(axes[0], t, example["planned"][:, axis], axis, name)
+        axes[0].plot(example["times"], example["points"][:, axis], "o", color=COLOURS[axis], markersize=4)
+    axes[0].set_ylim(-0.4, 0.9)
+    axes[0].set_title("gripper and its waypoints [m]")
+    axes[0].legend(loc="lower left", ncols=3)
+    base_y = example["robot"].joint_names.index("base_y")
+    curve(axes[1], t, example["abrupt"][:, base_y], 1, "as they come")
+    curve(axes[1], t, example["smooth"][:, base_y], 0, "stream")
+    axes[1].set_title("command of base_y under samples [m/s]")
+    axes[1].legend(loc="upper center", bbox_to_anchor=(0.35, 1.0))
+
+
 def printed_table(program: str) -> np.ndarray:
     """The lines of a program's output that are numbers alone."""
     text = subprocess.run([PROGRAMS / program], check=True, capture_output=True, text=True).stdout
