@@ -161,6 +161,47 @@ def safe_settings_and_status(example: Variables, axes: list[Axes]) -> None:
     axes[1].set_title("distance from the goal [m]; promised for 2 s")
 
 
+def distances(example: Variables, axes: list[Axes]) -> None:
+    """How near the robot comes, told of it and not."""
+    for place, what in enumerate(("the post", "the robot itself")):
+        for colour, (run, told) in enumerate({"kept": "told of it", "ignored": "not told"}.items()):
+            curve(axes[place], cycles(example[run]), 1e3 * example[run][:, place], colour, told)
+        axes[place].axhline(1e3 * example["margin"], **LIMIT)
+        axes[place].set_title(f"distance from {what} and its margin [mm]")
+    axes[0].legend()
+
+
+def another_robot(example: Variables, axes: list[Axes]) -> None:
+    """Which goals are reached, and the joints beside one's limit."""
+    for colour, (name, (_, _, error)) in enumerate(example["runs"].items()):
+        curve(axes[0], cycles(error), np.maximum(error, 1e-6), colour, name)
+    axes[0].set_yscale("log")
+    axes[0].set_title("distance from the goal [m]")
+    axes[0].legend()
+    robot, path, _ = example["runs"]["on a table, behind"]
+    span = robot.position_upper - robot.position_lower
+    joints(axes[1], (path - robot.position_lower) / span, robot.joint_names)
+    axes[1].axhline(0.0, **LIMIT)
+    axes[1].axhline(1.0, **LIMIT)
+    axes[1].set_title("joints on the table, shares of their ranges")
+
+
+def targets_from_outside(example: Variables, axes: list[Axes]) -> None:
+    """Waypoints that are passed, and a command with and without a stream."""
+    t = cycles(example["planned"])
+    for axis, name in enumerate("xyz"):
+        curve(axes[0], t, example["planned"][:, axis], axis, name)
+        axes[0].plot(example["times"], example["points"][:, axis], "o", color=COLOURS[axis], markersize=4)
+    axes[0].set_ylim(-0.4, 0.9)
+    axes[0].set_title("gripper and its waypoints [m]")
+    axes[0].legend(loc="lower left", ncols=3)
+    base_y = example["robot"].joint_names.index("base_y")
+    curve(axes[1], t, example["abrupt"][:, base_y], 1, "as they come")
+    curve(axes[1], t, example["smooth"][:, base_y], 0, "stream")
+    axes[1].set_title("command of base_y under samples [m/s]")
+    axes[1].legend(loc="upper center", bbox_to_anchor=(0.35, 1.0))
+
+
 def printed_table(program: str) -> np.ndarray:
     """The lines of a program's output that are numbers alone."""
     text = subprocess.run([PROGRAMS / program], check=True, capture_output=True, text=True).stdout
