@@ -210,6 +210,7 @@ def arm_and_base(example: Variables, axes: list[Axes]) -> None:
     for place, what in enumerate(("base [m, rad]", "gripper [m, rad]")):
         axes[place].set_yscale("log")
         axes[place].set_title(f"error of the {what}")
+    axes[0].lines[1].set_linestyle("--")  # it lies on the first
     axes[0].legend()
 
 
