@@ -202,6 +202,18 @@ def targets_from_outside(example: Variables, axes: list[Axes]) -> None:
     axes[1].legend(loc="upper center", bbox_to_anchor=(0.35, 1.0))
 
 
+def arm_and_base(example: Variables, axes: list[Axes]) -> None:
+    """Errors of base and gripper in each run."""
+    for colour, (name, errors) in enumerate(example["runs"].items()):
+        for place in range(2):
+            curve(axes[place], cycles(errors), np.maximum(errors[:, place], 1e-6), colour, name)
+    for place, what in enumerate(("base [m, rad]", "gripper [m, rad]")):
+        axes[place].set_yscale("log")
+        axes[place].set_title(f"error of the {what}")
+    axes[0].lines[1].set_linestyle("--")  # it lies on the first
+    axes[0].legend()
+
+
 def printed_table(program: str) -> np.ndarray:
     """The lines of a program's output that are numbers alone."""
     text = subprocess.run([PROGRAMS / program], check=True, capture_output=True, text=True).stdout
