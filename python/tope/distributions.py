@@ -19,6 +19,7 @@ from typing import Any, Literal, Protocol
 
 import numpy as np
 
+from tope import _core
 from tope.expression import Expression, Names
 from tope.pose import pose
 from tope.yaml_entry import Entry, hint
@@ -200,7 +201,7 @@ class PoseOf:
         drawn: dict[str, float] = {}
         for pattern, each in self.joints.items():
             if "*" in pattern:
-                for joint in (name for name in limited_joints(names) if fnmatchcase(name, pattern)):
+                for joint in matching_joints(pattern, names):
                     drawn[joint] = each.draw(random, {**names, **joint_figures(joint, names)})
             else:
                 drawn[pattern] = each.draw(random, names)
@@ -212,11 +213,14 @@ class PoseOf:
         return {f"{what}.{i}": "number" for what, size in sizes.items() for i in range(size)}
 
 
-def limited_joints(names: Names) -> list[str]:
-    """The joints whose limits formulas know."""
-    return [
-        name.split(".")[2] for name in names if name.startswith("limits.joints.") and name.endswith(".lower")
-    ]
+def matching_joints(pattern: str, names: Names) -> list[str]:
+    """The joints that a pattern stands for; raises ConfigError if there is none."""
+    keys = (name.split(".") for name in names)
+    joints = [key[2] for key in keys if key[:2] == ["limits", "joints"] and key[3:] == ["lower"]]
+    matching = [joint for joint in joints if fnmatchcase(joint, pattern)]
+    if not matching:
+        raise _core.ConfigError(f"pose: '{pattern}' is no joint; there are {', '.join(joints)}")
+    return matching
 
 
 def joint_figures(name: str, names: Names) -> dict[str, float]:

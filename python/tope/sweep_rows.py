@@ -17,7 +17,7 @@ from tope.campaign import Campaign
 from tope.campaign_file import check_worker
 from tope.runs import Summary, finite
 from tope.simulation import as_text
-from tope.words import worst
+from tope.words import nearest_pair, worst
 
 Row = dict[str, Any]
 
@@ -112,9 +112,8 @@ def clearance(summary: Summary) -> Row:
     """The least distance, and of which pair, where distances are kept."""
     if "least_distance" not in summary:
         return {}
-    pairs = {pair: each for pair, each in summary["least_distance"].items() if pair != "overall"}
-    nearest = min(pairs, key=lambda pair: pairs[pair])
-    return {"nearest_pair": nearest, "least_distance": pairs[nearest]}
+    pair, least = nearest_pair(summary)
+    return {"nearest_pair": pair, "least_distance": least}
 
 
 def refined(summary: Summary, fine: Summary) -> Row:

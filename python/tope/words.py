@@ -173,10 +173,9 @@ def limits(summary: Summary) -> str:
 
 def clearance(summary: Summary) -> str:
     """The pair of a sphere and a body that came closest, with its distance."""
-    pairs = {pair: each for pair, each in summary["least_distance"].items() if pair != "overall"}
-    nearest = min(pairs, key=lambda pair: pairs[pair])
-    distance = number(abs(pairs[nearest]), "m")
-    return f"{distance} kept ({nearest})" if pairs[nearest] > 0 else f"penetration by {distance} ({nearest})"
+    pair, least = nearest_pair(summary)
+    distance = number(abs(least), "m")
+    return f"{distance} kept ({pair})" if least > 0 else f"penetration by {distance} ({pair})"
 
 
 def jump(summary: Summary) -> str:
@@ -196,6 +195,13 @@ def cycle_time(summary: Summary) -> str:
     took = summary["cycle_time_us"]
     names = (("p50", "median"), ("p99", "99 % under"), ("p999", "99.9 % under"), ("max", "slowest"))
     return ", ".join(f"{label} {number(took[key], 'µs')}" for key, label in names)
+
+
+def nearest_pair(summary: Summary) -> tuple[str, float]:
+    """The pair of a sphere and a body that came closest, and its least distance [m]."""
+    pairs = {pair: each for pair, each in summary["least_distance"].items() if pair != "overall"}
+    pair = min(pairs, key=lambda pair: pairs[pair])
+    return pair, pairs[pair]
 
 
 def worst(by_joint: Mapping[str, float | None]) -> tuple[str, float | None]:

@@ -215,6 +215,14 @@ double YamlReader::positive(const std::string& key, double fallback) const {
   return has(key) ? positive(key) : fallback;
 }
 
+std::optional<double> YamlReader::optional_positive(const std::string& key) const {
+  return has(key) ? std::optional(positive(key)) : std::nullopt;
+}
+
+bool YamlReader::flag(const std::string& key, bool fallback) const {
+  return choice(*this, key, text(key, fallback ? "true" : "false"), {"false", "true"}) == 1;
+}
+
 int YamlReader::integer(const std::string& key) const {
   return scalar<int>(key, require(key), "a whole number");
 }
@@ -291,7 +299,9 @@ std::vector<std::string> YamlReader::keys() const {
 }
 
 std::filesystem::path YamlReader::path(const std::string& key) const {
-  return (source_->file.parent_path() / text(key)).lexically_normal();
+  const std::string given = text(key);
+  return given.starts_with("package://") ? std::filesystem::path(given)
+                                         : (source_->file.parent_path() / given).lexically_normal();
 }
 
 void YamlReader::finish() const {

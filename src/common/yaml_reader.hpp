@@ -40,6 +40,8 @@ class YamlReader {
   double number(const std::string& key, double fallback) const;
   double positive(const std::string& key) const;
   double positive(const std::string& key, double fallback) const;
+  std::optional<double> optional_positive(const std::string& key) const;
+  bool flag(const std::string& key, bool fallback) const;
   int integer(const std::string& key) const;
   int integer(const std::string& key, int fallback) const;
   std::string text(const std::string& key) const;
@@ -52,7 +54,7 @@ class YamlReader {
   /// All entries of a map of numbers, in the order of the file.
   std::vector<std::pair<std::string, double>> numbers(const std::string& key) const;
   std::vector<std::string> keys() const;
-  /// A path that is relative to this file's folder.
+  /// A path that is relative to this file's folder; package://NAME/... stays as it is.
   std::filesystem::path path(const std::string& key) const;
 
   /// Refuses every key that was never asked for, naming the nearest known one.

@@ -1,4 +1,5 @@
 #include "../common/require_positive.hpp"
+#include "../common/rotation_check.hpp"
 #include "point_distance.hpp"
 
 #include <tope/common/names.hpp>
@@ -13,13 +14,6 @@ namespace {
 using Twist = Eigen::Matrix<double, 6, 1>;  // linear over angular
 using PointJacobian = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 using FrameJacobian = Eigen::Matrix<double, 6, Eigen::Dynamic>;
-
-constexpr double kOrthonormal = 1e-6;
-
-bool is_rotation(const Matrix3& m) {
-  return (m.transpose() * m - Matrix3::Identity()).cwiseAbs().maxCoeff() < kOrthonormal &&
-         m.determinant() > 0.0;
-}
 
 /// What is fixed to a frame moves a point at `arm` from its origin.
 Vector3 velocity_at(const Twist& twist, const Vector3& arm) {

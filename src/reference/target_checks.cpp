@@ -1,8 +1,8 @@
 #include "target_checks.hpp"
 
-#include <tope/common/error.hpp>
+#include "../common/rotation_check.hpp"
 
-#include <Eigen/Dense>
+#include <tope/common/error.hpp>
 
 #include <sstream>
 
@@ -14,18 +14,6 @@ void require_finite(const std::string& what, const VectorArg& values) {
     message << what << ": must be finite, got (" << values.transpose() << ")";
     throw ConfigError(message.str());
   }
-}
-
-namespace {
-
-double deviation_from_rotation(const Matrix3& rotation) {
-  return (rotation.transpose() * rotation - Matrix3::Identity()).cwiseAbs().maxCoeff();
-}
-
-}  // namespace
-
-bool is_rotation(const Matrix3& rotation) noexcept {
-  return deviation_from_rotation(rotation) < 1e-6 && rotation.determinant() > 0.0;
 }
 
 void require_rotation(const std::string& what, const Matrix3& rotation) {

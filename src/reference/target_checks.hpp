@@ -9,9 +9,6 @@ namespace tope {
 /// Errors: ConfigError when a value is NaN or infinite.
 void require_finite(const std::string& what, const VectorArg& values);
 
-/// True where R^T R = I and det R = 1, to 1e-6.
-bool is_rotation(const Matrix3& rotation) noexcept;
-
 /// Errors: ConfigError unless R^T R = I and det R = 1, to 1e-6.
 void require_rotation(const std::string& what, const Matrix3& rotation);
 

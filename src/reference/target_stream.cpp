@@ -1,4 +1,5 @@
 #include "../common/require_positive.hpp"
+#include "../common/rotation_check.hpp"
 #include "quaternion_motion.hpp"
 #include "sequence_lock.hpp"
 #include "stream_follower.hpp"

@@ -43,10 +43,6 @@ RobotConfig::Base read_base(const YamlReader& yaml) {
   return base;
 }
 
-std::optional<double> positive_if_given(const YamlReader& yaml, const std::string& key) {
-  return yaml.has(key) ? std::optional(yaml.positive(key)) : std::nullopt;
-}
-
 RobotConfig::MovingBase read_moving_base(const YamlReader& yaml) {
   const std::string type = yaml.text("type");
   const auto found = std::find(base_types().begin(), base_types().end(), type);
@@ -57,8 +53,8 @@ RobotConfig::MovingBase read_moving_base(const YamlReader& yaml) {
   base.type = static_cast<RobotConfig::MovingBase::Type>(found - base_types().begin());
   base.speed = yaml.positive("speed");
   base.turn_rate = yaml.positive("turn_rate");
-  base.force = positive_if_given(yaml, "force");
-  base.torque = positive_if_given(yaml, "torque");
+  base.force = yaml.optional_positive("force");
+  base.torque = yaml.optional_positive("torque");
   yaml.finish();
   return base;
 }

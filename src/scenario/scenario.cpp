@@ -17,9 +17,8 @@ namespace tope {
 namespace {
 
 Robot read_robot(const YamlReader& yaml, Scenario& scenario) {
-  const bool packaged = yaml.text("urdf").starts_with("package://");
-  const std::filesystem::path urdf =
-      packaged ? located(yaml, "urdf", [&] { return package_path(yaml.text("urdf")); }) : yaml.path("urdf");
+  const std::filesystem::path given = yaml.path("urdf");
+  const std::filesystem::path urdf = located(yaml, "urdf", [&] { return package_path(given); });
   scenario.urdf = std::filesystem::absolute(urdf).lexically_normal();
   const bool has_config = yaml.has("config");
   const std::filesystem::path config = has_config ? yaml.path("config") : "";
@@ -69,14 +68,10 @@ void read_joint_limits(const YamlReader& joints, Robot& robot, JointLimitOptions
   robot.set_velocity_limit(velocity);
 }
 
-std::optional<double> positive_if_given(const YamlReader& yaml, const std::string& key) {
-  return yaml.has(key) ? std::optional(yaml.positive(key)) : std::nullopt;
-}
-
 /// Either the library's `gain` and `servo_gain`, or the paper's `lambda_p` and `lambda_v`.
 void read_servo(const YamlReader& yaml, JointLimitOptions& options) {
   if (!yaml.has("lambda_p") && !yaml.has("lambda_v")) {
-    options.gain = positive_if_given(yaml, "gain");
+    options.gain = yaml.optional_positive("gain");
     options.servo_gain = yaml.positive("servo_gain", options.servo_gain);
     return;
   }
@@ -112,13 +107,13 @@ LimitOptions read_limits(const YamlReader& yaml, Robot& robot, std::vector<Movin
     read_joint_limits(*joints, robot, limits.rows, moving);
   }
   if (const auto law = yaml.optional_map("unilateral")) {
-    limits.unilateral.damping = positive_if_given(*law, "damping");
-    limits.unilateral.fine_damping = positive_if_given(*law, "fine_damping");
-    limits.unilateral.fine_below = positive_if_given(*law, "fine_below");
-    limits.unilateral.lock = positive_if_given(*law, "lock");
-    limits.unilateral.headroom = positive_if_given(*law, "headroom");
-    limits.unilateral.inequality_headroom = positive_if_given(*law, "inequality_headroom");
-    limits.unilateral.softness = positive_if_given(*law, "softness");
+    limits.unilateral.damping = law->optional_positive("damping");
+    limits.unilateral.fine_damping = law->optional_positive("fine_damping");
+    limits.unilateral.fine_below = law->optional_positive("fine_below");
+    limits.unilateral.lock = law->optional_positive("lock");
+    limits.unilateral.headroom = law->optional_positive("headroom");
+    limits.unilateral.inequality_headroom = law->optional_positive("inequality_headroom");
+    limits.unilateral.softness = law->optional_positive("softness");
     law->finish();
   }
   if (const auto field = yaml.optional_map("potential_field")) {
@@ -138,8 +133,8 @@ CollisionOptions read_collisions(const YamlReader& yaml) {
   CollisionOptions options;
   options.geometry = read_collision_geometry(yaml, "obstacles");
   options.margin = yaml.positive("margin", options.margin);
-  options.gain = positive_if_given(yaml, "gain");
-  options.servo_gain = positive_if_given(yaml, "servo_gain");
+  options.gain = yaml.optional_positive("gain");
+  options.servo_gain = yaml.optional_positive("servo_gain");
   yaml.finish();
   return options;
 }
@@ -184,7 +179,7 @@ RigidBodyOptions read_rigid_body(const YamlReader& yaml) {
   options.integrator = static_cast<RigidBodyOptions::Integrator>(
       choice(yaml, "integrator", yaml.text("integrator", "rk4"), integrators));
   options.substeps = yaml.integer("substeps", options.substeps);
-  options.friction = choice(yaml, "friction", yaml.text("friction", "false"), {"false", "true"}) == 1;
+  options.friction = yaml.flag("friction", false);
   options.inertia_scale = yaml.positive("inertia_scale", options.inertia_scale);
   options.payload = yaml.number("payload", options.payload);
   options.payload_frame = yaml.text("payload_frame", options.payload_frame);
@@ -222,8 +217,7 @@ void read_torque_options(const YamlReader& yaml, ControllerOptions& options) {
   static const std::vector<std::string> null_spaces{"compensated", "zero_torque"};
   options.null_space = static_cast<NullSpace>(
       choice(yaml, "null_space", yaml.text("null_space", null_spaces[0]), null_spaces));
-  static const std::vector<std::string> switches{"false", "true"};
-  options.midpoint = choice(yaml, "midpoint", yaml.text("midpoint", "true"), switches) == 1;
+  options.midpoint = yaml.flag("midpoint", options.midpoint);
   static const std::vector<std::string> distributions{"minimum_norm", "minimum_peak"};
   options.wheel_distribution = static_cast<WheelDistribution>(
       choice(yaml, "wheel_distribution", yaml.text("wheel_distribution", distributions[0]), distributions));

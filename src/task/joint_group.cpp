@@ -1,10 +1,9 @@
+#include "distinct_joints.hpp"
 #include "generic_position.hpp"
 
 #include <tope/common/error.hpp>
 #include <tope/task/joint_group.hpp>
 #include <tope/task/selected_rows.hpp>
-
-#include <algorithm>
 
 namespace tope {
 namespace {
@@ -13,15 +12,7 @@ std::vector<int> indices(const Robot& robot, const std::vector<std::string>& nam
   if (names.empty()) {
     throw ConfigError("JointGroup: names no joint");
   }
-  std::vector<int> joints;
-  for (const std::string& name : names) {
-    const int joint = robot.joint_index(name);
-    if (std::find(joints.begin(), joints.end(), joint) != joints.end()) {
-      throw ConfigError("JointGroup: joint '" + name + "' is named twice");
-    }
-    joints.push_back(joint);
-  }
-  return joints;
+  return distinct_joints(robot, names, "JointGroup: joint");
 }
 
 std::unique_ptr<Task> served_part(const Task& task, const std::vector<int>& joints) {

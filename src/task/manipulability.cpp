@@ -1,4 +1,5 @@
 #include "../common/require_positive.hpp"
+#include "distinct_joints.hpp"
 #include "generic_position.hpp"
 
 #include <tope/common/error.hpp>
@@ -33,18 +34,11 @@ std::vector<int> checked_rows(const std::vector<int>& rows) {
 }
 
 std::vector<int> joints_or_all(const Robot& robot, const std::vector<std::string>& names) {
+  if (!names.empty()) {
+    return distinct_joints(robot, names, "Manipulability: joints:");
+  }
   std::vector<int> joints(static_cast<std::size_t>(robot.nv()));
   std::iota(joints.begin(), joints.end(), 0);
-  if (names.empty()) {
-    return joints;
-  }
-  joints.clear();
-  for (const std::string& name : names) {
-    joints.push_back(robot.joint_index(name));
-    if (std::find(joints.begin(), joints.end() - 1, joints.back()) != joints.end() - 1) {
-      throw ConfigError("Manipulability: joints: '" + name + "' is named twice");
-    }
-  }
   return joints;
 }
 

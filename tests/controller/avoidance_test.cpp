@@ -1,5 +1,6 @@
 // Distances kept in closed loop, in both modes: obstacles at rest and moving, the robot's own links; continuity in the
 // period; status; refusals; no allocation. Not here: the rows themselves (limit room), the law (law room).
+#include "support/jump.hpp"
 #include "support/loop.hpp"
 #include "support/no_allocation.hpp"
 #include "support/robots.hpp"
@@ -15,6 +16,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 namespace tope::test {
 namespace {
@@ -134,15 +136,11 @@ BOOST_AUTO_TEST_CASE(jumps_of_the_command_fall_with_the_period) {
       const auto largest_jump = [&](double dt) {
         Avoiding loop(options(mode, course.obstacles, dt));
         loop.reach(course.goal, course.orientation);
-        const Vector bound = mode == Mode::torque ? loop.robot.effort_limit() : loop.robot.velocity_limit();
+        Jump jump(loop);
         loop.step();
-        Vector last = loop.u;
-        double largest = 0.0;
-        loop.run(1.0, [&] {
-          largest = std::max(largest, (loop.u - last).cwiseQuotient(bound).cwiseAbs().maxCoeff());
-          last = loop.u;
-        });
-        return largest;
+        jump();
+        loop.run(1.0, std::ref(jump));
+        return jump.largest;
       };
       const double coarse = largest_jump(period);
       const double fine = largest_jump(0.1 * period);

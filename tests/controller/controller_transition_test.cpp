@@ -1,6 +1,7 @@
 // Tasks that come, go, move between levels and are replaced: activations over time, commands that stay continuous (their
 // largest jump falls with the period) in both modes, exact ends, and handles of tasks that are gone. Not here:
 // orientation errors that pass pi, where a command jumps by definition and the status says so.
+#include "support/jump.hpp"
 #include "support/loop.hpp"
 #include "support/robots.hpp"
 #include "support/text.hpp"
@@ -18,23 +19,6 @@
 
 namespace tope::test {
 namespace {
-
-/// Watches the largest change of a command between cycles, over each joint's bound.
-struct Jump {
-  explicit Jump(const Loop& watched) : loop(watched) {}
-
-  void operator()() {
-    const Vector& bound = loop.body ? loop.robot.effort_limit() : loop.robot.velocity_limit();
-    if (last.size() > 0) {
-      largest = std::max(largest, (loop.u - last).cwiseQuotient(bound).cwiseAbs().maxCoeff());
-    }
-    last = loop.u;
-  }
-
-  const Loop& loop;
-  Vector last;
-  double largest = 0.0;
-};
 
 /// While tasks come, overlap and go.
 double largest_jump(LimitMethod method, int seed, double dt) {

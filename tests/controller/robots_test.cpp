@@ -3,6 +3,7 @@
 // command gets on far ones, through singularities; campaigns/robots_*.yaml measure that.
 #include "support/robots.hpp"
 
+#include "support/jump.hpp"
 #include "support/loop.hpp"
 
 #include <tope/robot/robot_terms.hpp>
@@ -62,8 +63,8 @@ std::vector<Case> cases(Mode mode) {
 }
 
 struct Outcome {
-  double beyond = -1e9;  // a limit
-  double jump = 0.0;     // share of the bound
+  double beyond;  // a limit
+  double jump;    // share of the bound
 };
 
 Outcome drive(const Case& c, Mode mode, int seed, double dt) {
@@ -77,17 +78,13 @@ Outcome drive(const Case& c, Mode mode, int seed, double dt) {
   loop.controller.add(1, FrameOrientation(c.robot, c.frame, there.frame_rotation(frame)));
   loop.controller.add(2, FramePosition(c.robot, c.frame, there.frame_position(frame)));
   loop.controller.add(3, Damping(c.robot));
-  Outcome outcome;
-  Vector last;
-  const Vector& bound = mode == Mode::torque ? loop.robot.effort_limit() : loop.robot.velocity_limit();
+  Jump jump(loop);
+  double beyond = -1e9;
   loop.run(0.6, [&] {
-    outcome.beyond = std::max(outcome.beyond, loop.beyond());
-    if (last.size() > 0) {
-      outcome.jump = std::max(outcome.jump, (loop.u - last).cwiseQuotient(bound).cwiseAbs().maxCoeff());
-    }
-    last = loop.u;
+    beyond = std::max(beyond, loop.beyond());
+    jump();
   });
-  return outcome;
+  return {.beyond = beyond, .jump = jump.largest};
 }
 
 }  // namespace

@@ -192,6 +192,18 @@ def test_a_pose_is_where_pinocchio_sees_the_frame(tmp_path):
     )
 
 
+def test_a_pose_may_name_joints_by_a_pattern(tmp_path):
+    head = f"name: n\nseed: 1\nruns: 3\nscenario: {SCENARIOS}/youbot_velocity.yaml\nlet:\n"
+
+    def goal(joints):
+        text = f"{head}  goal: {{pose: {{frame: ee, joints: {{{joints}}}}}}}\n"
+        return load_campaign(campaign_file(tmp_path, text)).draw(0).let["goal"]
+
+    assert goal('"arm_joint_*": 0.4') == goal(", ".join(f"arm_joint_{j}: 0.4" for j in range(1, 6)))
+    with pytest.raises(_core.ConfigError, match=r"'leg_\*' is no joint; there are base_x, base_y"):
+        goal('"leg_*": 0.4')
+
+
 @pytest.mark.parametrize("file", sorted(CAMPAIGNS.glob("*.yaml")), ids=lambda file: file.stem)
 def test_the_campaigns_kept_here_draw_scenarios_that_are_accepted(file):
     campaign = load_campaign(file)
