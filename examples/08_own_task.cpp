@@ -53,7 +53,8 @@ class FrameDistance final : public tope::Task {
 int main() {
   const auto robot = tope::Robot::from_urdf("robots/youbot/youbot.urdf", "robots/youbot/youbot.yaml");
   const double dt = 1e-3;
-  tope::Controller controller{robot, {.mode = tope::Mode::torque, .dt = dt}};
+  // Not half a period ahead: below, the derivatives are compared with differences of the plant's states.
+  tope::Controller controller{robot, {.mode = tope::Mode::torque, .dt = dt, .midpoint = false}};
   const tope::Exponential stiff{10.0};
   const auto keep = controller.add(1, FrameDistance{robot, "ee", tope::Vector3(1.0, 0.0, 0.3), 0.3, stiff});
   const auto swinging =
