@@ -3,6 +3,7 @@
 #include <tope/law/command_bounds.hpp>
 #include <tope/law/smooth_step.hpp>
 #include <tope/robot/braking_authority.hpp>
+#include <tope/robot/heaviest_joint.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -116,6 +117,7 @@ Controller::Controller(const Robot& robot, const ControllerOptions& options)
       options_(options),
       terms_(robot_),
       authority_(torque_mode() ? braking_authority(robot_) : Vector()),
+      heaviest_(torque_mode() ? heaviest_joint(robot_) : 0.0),
       limits_(robot_, with_gain(robot_, options_, authority_)),
       collisions_(make_collisions(robot_, options_.limits, limits_)),
       full_speed_drift_(collisions_ && !torque_mode() ? tope::full_speed_drift(robot_, *collisions_) : 0.0),
@@ -157,7 +159,7 @@ Controller::Controller(const Robot& robot, const ControllerOptions& options)
 
 /// Joints with little room between their bounds take less of it.
 void Controller::share_headroom() {
-  const double most = options_.limits.unilateral.resolved(options_.mode).headroom;
+  const double most = unilateral_options().headroom;
   for (int j = 0; j < robot_.nv(); ++j) {
     stack_.headroom_share[j] = suitable_headroom(limits_, j, torque_mode(), most) / most;
   }
@@ -165,7 +167,7 @@ void Controller::share_headroom() {
 
 std::vector<Condition> Controller::conditions() const {
   const LimitMethod method = options_.limits.method;
-  const Vector headroom = options_.limits.unilateral.resolved(options_.mode).headroom * stack_.headroom_share;
+  const Vector headroom = unilateral_options().headroom * stack_.headroom_share;
   std::vector<Condition> conditions =
       torque_mode() ? torque_conditions(robot_, limits_, method, headroom, options_.dt, authority_)
                     : velocity_conditions(robot_, limits_, method, headroom, options_.dt);
@@ -263,10 +265,14 @@ const Task& Controller::task(TaskHandle handle) const { return *entry(handle).ta
 
 double Controller::activation(TaskHandle handle) const { return entry(handle).activation; }
 
+Unilateral::Options Controller::unilateral_options() const {
+  return options_.limits.unilateral.resolved(options_.mode, heaviest_);
+}
+
 LawOptions Controller::law_options() const {
   return {.method = options_.limits.method,
           .hierarchy = options_.singularities,
-          .unilateral = options_.limits.unilateral.resolved(options_.mode)};
+          .unilateral = unilateral_options()};
 }
 
 /// Lays out the stack for the present entries and reserves the law's memory.
@@ -592,7 +598,7 @@ void Controller::report(const CommandBounds& bounds) {
 
 void Controller::report_collisions(const CollisionLimits& collisions) {
   // level 0 alone would leave every row its whole headroom
-  const double headroom = options_.limits.unilateral.resolved(options_.mode).inequality_headroom;
+  const double headroom = unilateral_options().inequality_headroom;
   status_.avoiding_pair = collisions.pressed_by(motion_, headroom);
   if (status_.avoiding_pair >= 0) {
     status_.add(Event::avoiding);

@@ -111,6 +111,7 @@ class Controller {
   int replacement_row(const Entry& entry) const;
   bool replaced(std::size_t row) const;
   void advance_tasks(double t);
+  Unilateral::Options unilateral_options() const;
   LawOptions law_options() const;
   void share_headroom();
   void rebuild();
@@ -134,6 +135,7 @@ class Controller {
   ControllerOptions options_;
   RobotTerms terms_;
   Vector authority_;  // what each drive can brake with, torque mode (n)
+  double heaviest_;   // inertia of a joint, torque mode [kg or kg m2]
   JointLimits limits_;
   std::optional<CollisionLimits> collisions_;
   double full_speed_drift_;  // of the distances, velocity mode [m/s2]

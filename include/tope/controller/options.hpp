@@ -23,8 +23,9 @@ enum class NullSpace {
   zero_torque,  ///< nothing, as in the paper: the null space falls and drifts
 };
 
-/// Unilateral::Options; what is unset is chosen for the mode, since the units differ. An unset headroom is smaller for
-/// joints whose bounds leave less room.
+/// Unilateral::Options; what is unset is chosen for the mode, since the units differ, and for the robot: damping and lock
+/// of torque mode fall with the inertia of its heaviest joint, and a headroom is smaller for joints whose bounds leave
+/// less room. docs/parameters.md shows how they were chosen.
 struct UnilateralOptions {
   std::optional<double> damping{};
   std::optional<double> fine_damping{};
@@ -34,7 +35,8 @@ struct UnilateralOptions {
   std::optional<double> inequality_headroom{};
   std::optional<double> softness{};
 
-  Unilateral::Options resolved(Mode mode) const;
+  /// `heaviest` [kg or kg m2]: torque mode, heaviest_joint of the robot.
+  Unilateral::Options resolved(Mode mode, double heaviest) const;
 };
 
 struct LimitOptions {

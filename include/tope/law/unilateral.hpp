@@ -35,7 +35,7 @@ class Unilateral final : public StackLaw {
     double damping = 0.05;       ///< lambda far from the goal, in units of the whitened rows
     double fine_damping = 0.02;  ///< lambda at the goal
     double fine_below = 0.05;    ///< residual between the two, in units of the task's rate [rad/s or m/s]
-    double lock = 0.1;           ///< sigma_lock, in units of the whitened rows
+    double lock = 0.03;          ///< sigma_lock, in units of the whitened rows
     double headroom = 0.01;      ///< eta, in units of the motion [rad/s or m/s]
     double softness = 0.01;      ///< of the inequality rows at level 0, in units of the whitened rows
     /// eta of the inequality rows, in their units [m/s]. Larger than that of the motion: a row that a level's freedom
