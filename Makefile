@@ -117,6 +117,11 @@ bench-peers: build
 near-goals: build
 	$(BIN)/python bench/near_goals.py --page
 
+# What the options of the method unilateral do, on six robots: docs/parameters.md. Ten minutes.
+.PHONY: parameters
+parameters: build
+	$(BIN)/python bench/parameters.py --page
+
 # How a cycle's cost grows with joints, limits in transition and levels: docs/scaling.md. Two minutes.
 .PHONY: scaling
 scaling: build

@@ -9,10 +9,12 @@ less, the command may still be continuous but steep: then it must shrink so at a
 """
 
 import argparse
+from collections.abc import Mapping
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 from rich.console import Console
@@ -76,14 +78,15 @@ def start(random: np.random.Generator, kind: str, buffer: float) -> dict[str, fl
     return state
 
 
-def run(number: int, mode: str, method: str) -> Outcome:
-    """Follow one state at dt and at dt / 10."""
+def run(number: int, mode: str, method: str, options: Mapping[str, float] = MappingProxyType({})) -> Outcome:
+    """Follow one state at dt and at dt / 10, with these options of the method `unilateral`."""
     random = np.random.default_rng([7, number])
     kind = KINDS[number % len(KINDS)]
     turned = Rotation.from_rotvec(random.uniform(-1.0, 1.0, 3))
     overrides = {
         "limits.method": method,
         "limits.buffer": BUFFER[mode],
+        **{f"limits.unilateral.{key}": value for key, value in options.items()},
         "initial": start(random, kind, BUFFER[mode]),
         "duration": DURATION,
         "tasks.orientation.target.quaternion": list(turned.as_quat(scalar_first=True)),

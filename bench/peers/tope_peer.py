@@ -1,8 +1,8 @@
 """tope itself, through the loop that its peers go through. Configurations:
 
 unilateral, chain   ways to meet limits, with tope's defaults
-tight               `unilateral` with a margin of 0.1 mm or mrad, a tenth of the headroom, a lock of 0.02:
-                    goes nearer to limits, gives weak directions to lower levels later, at steeper slopes
+tight               `unilateral` nearer to limits, weak directions given to lower levels later: steeper
+margin=1e-4,...     `unilateral` with these options
 
 Settings: orientation in level 1, position in level 2, posture in level 3; where the joints are to rest, no
 posture, and damping in torque mode.
@@ -26,15 +26,22 @@ class Tope(Peer):
     def __init__(self, setup: Setup, configuration: str) -> None:
         self.setup = setup
         self.robot = tope.Robot.from_urdf(setup.urdf, setup.config)
-        self.limits = tope.LimitOptions(method=configuration) if configuration != "tight" else self.tight()
-        self.settings = "defaults" if configuration != "tight" else "margin 1e-4, headroom a tenth, lock 0.02"
+        self.limits, self.settings = self.options(configuration)
         self.controller: tope.Controller
         self.t = 0.0
 
-    def tight(self) -> tope.LimitOptions:
-        """Nearer to limits than by default, at steeper slopes."""
-        headroom = 0.05 if self.setup.torque else 0.001  # rad/s2 or rad/s: a tenth of the default
-        return tope.LimitOptions(margin=1e-4, unilateral=tope.UnilateralOptions(headroom=headroom, lock=0.02))
+    def options(self, configuration: str) -> tuple[tope.LimitOptions, str]:
+        """And their description."""
+        if configuration in tope.LIMIT_METHODS:
+            return tope.LimitOptions(method=configuration), "defaults"
+        if configuration == "tight":
+            headroom = (
+                0.05 if self.setup.torque else 0.001
+            )  # rad/s2 or rad/s: a half and a tenth of the default
+            configuration = f"margin=1e-4,headroom={headroom},lock=0.02"
+        named = {key: float(value) for key, value in (part.split("=") for part in configuration.split(","))}
+        margin = {"margin": named.pop("margin")} if "margin" in named else {}
+        return tope.LimitOptions(unilateral=tope.UnilateralOptions(**named), **margin), configuration
 
     def start(self, goal: Pose, dt: float) -> None:
         """Begin anew."""

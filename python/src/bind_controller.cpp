@@ -44,23 +44,38 @@ void set_servo(JointLimitOptions& rows, OptionalNumber gain, OptionalNumber serv
 }
 
 void bind_options(nb::module_& module) {
+  nb::class_<Smoothing>(
+      module, "Smoothing",
+      "The mean of `solutions` commands whose headrooms are between the first and `1 + spread` times "
+      "that: weaker kinks where bounds become active, at so many times the cost.")
+      .def(
+          "__init__",
+          [](Smoothing* self, int solutions, double spread) {
+            const Smoothing smoothing{.solutions = solutions, .spread = spread};
+            smoothing.check();
+            new (self) Smoothing(smoothing);
+          },
+          nb::kw_only(), "solutions"_a = Smoothing{}.solutions, "spread"_a = Smoothing{}.spread);
   nb::class_<UnilateralOptions>(module, "UnilateralOptions", "Parameters of the method `unilateral`.")
       .def(
           "__init__",
           [](UnilateralOptions* self, OptionalNumber damping, OptionalNumber fine_damping,
              OptionalNumber fine_below, OptionalNumber lock, OptionalNumber headroom,
-             OptionalNumber inequality_headroom, OptionalNumber softness) {
+             OptionalNumber inequality_headroom, OptionalNumber softness,
+             const std::optional<Smoothing>& smoothing) {
             new (self) UnilateralOptions{.damping = damping,
                                          .fine_damping = fine_damping,
                                          .fine_below = fine_below,
                                          .lock = lock,
                                          .headroom = headroom,
                                          .inequality_headroom = inequality_headroom,
-                                         .softness = softness};
+                                         .softness = softness,
+                                         .smoothing = smoothing};
           },
           nb::kw_only(), "damping"_a = nb::none(), "fine_damping"_a = nb::none(), "fine_below"_a = nb::none(),
           "lock"_a = nb::none(), "headroom"_a = nb::none(), "inequality_headroom"_a = nb::none(),
-          "softness"_a = nb::none(), "What is None is chosen for the mode.");
+          "softness"_a = nb::none(), "smoothing"_a = nb::none(),
+          "What is None is chosen for the mode and the robot; no smoothing.");
   nb::class_<PotentialFieldOptions>(module, "PotentialFieldOptions",
                                     "Parameters of the method `potential_field`.")
       .def(

@@ -159,7 +159,7 @@ Controller::Controller(const Robot& robot, const ControllerOptions& options)
 
 /// Joints with little room between their bounds take less of it.
 void Controller::share_headroom() {
-  const double most = unilateral_options().headroom;
+  const double most = widest_headroom();
   for (int j = 0; j < robot_.nv(); ++j) {
     stack_.headroom_share[j] = suitable_headroom(limits_, j, torque_mode(), most) / most;
   }
@@ -167,7 +167,7 @@ void Controller::share_headroom() {
 
 std::vector<Condition> Controller::conditions() const {
   const LimitMethod method = options_.limits.method;
-  const Vector headroom = unilateral_options().headroom * stack_.headroom_share;
+  const Vector headroom = widest_headroom() * stack_.headroom_share;
   std::vector<Condition> conditions =
       torque_mode() ? torque_conditions(robot_, limits_, method, headroom, options_.dt, authority_)
                     : velocity_conditions(robot_, limits_, method, headroom, options_.dt);
@@ -269,10 +269,17 @@ Unilateral::Options Controller::unilateral_options() const {
   return options_.limits.unilateral.resolved(options_.mode, heaviest_);
 }
 
+/// What a level 0 may leave free of a joint's bounds.
+double Controller::widest_headroom() const {
+  const auto& smoothing = options_.limits.unilateral.smoothing;
+  return unilateral_options().headroom * (smoothing ? smoothing->factor(1.0) : 1.0);
+}
+
 LawOptions Controller::law_options() const {
   return {.method = options_.limits.method,
           .hierarchy = options_.singularities,
-          .unilateral = unilateral_options()};
+          .unilateral = unilateral_options(),
+          .smoothing = options_.limits.unilateral.smoothing};
 }
 
 /// Lays out the stack for the present entries and reserves the law's memory.
@@ -598,7 +605,9 @@ void Controller::report(const CommandBounds& bounds) {
 
 void Controller::report_collisions(const CollisionLimits& collisions) {
   // level 0 alone would leave every row its whole headroom
-  const double headroom = unilateral_options().inequality_headroom;
+  const auto& smoothing = options_.limits.unilateral.smoothing;
+  const double headroom =
+      unilateral_options().inequality_headroom * (smoothing ? smoothing->factor(0.5) : 1.0);
   status_.avoiding_pair = collisions.pressed_by(motion_, headroom);
   if (status_.avoiding_pair >= 0) {
     status_.add(Event::avoiding);

@@ -7,6 +7,9 @@ namespace {
 std::unique_ptr<StackLaw> make_phi(const Stack& stack, const LawOptions& options) {
   switch (options.method) {
     case LimitMethod::unilateral:
+      if (options.smoothing) {
+        return std::make_unique<SmoothUnilateral>(stack, options.unilateral, *options.smoothing);
+      }
       return std::make_unique<Unilateral>(stack, options.unilateral);
     case LimitMethod::intermediate:
       return std::make_unique<IntermediateValues>(stack, options.hierarchy,

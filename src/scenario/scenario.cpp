@@ -89,6 +89,15 @@ void read_servo(const YamlReader& yaml, JointLimitOptions& options) {
   options.servo_gain = gains.servo_gain;
 }
 
+Smoothing read_smoothing(const YamlReader& yaml) {
+  Smoothing smoothing;
+  smoothing.spread = yaml.positive("spread", smoothing.spread);
+  smoothing.solutions = yaml.integer("solutions", smoothing.solutions);
+  located(yaml, "solutions", [&] { smoothing.check(); });
+  yaml.finish();
+  return smoothing;
+}
+
 LimitOptions read_limits(const YamlReader& yaml, Robot& robot, std::vector<MovingLimit>& moving) {
   LimitOptions limits;
   const std::string method = yaml.text("method", to_string(limits.method));
@@ -114,6 +123,9 @@ LimitOptions read_limits(const YamlReader& yaml, Robot& robot, std::vector<Movin
     limits.unilateral.headroom = law->optional_positive("headroom");
     limits.unilateral.inequality_headroom = law->optional_positive("inequality_headroom");
     limits.unilateral.softness = law->optional_positive("softness");
+    if (const auto smoothing = law->optional_map("smoothing")) {
+      limits.unilateral.smoothing = read_smoothing(*smoothing);
+    }
     law->finish();
   }
   if (const auto field = yaml.optional_map("potential_field")) {

@@ -19,28 +19,28 @@ constexpr double kCarriage = 40.0;  // kg
 constexpr double kLink = 2.0;       // kg, each of two
 
 std::string link(const std::string& name, double mass, double inertia) {
-  return "<link name=\"" + name + "\"><inertial><origin xyz=\"0.2 0 0\"/><mass value=\"" + std::to_string(mass) +
-         "\"/><inertia ixx=\"0\" iyy=\"0\" izz=\"" + std::to_string(inertia) +
+  return "<link name=\"" + name + "\"><inertial><origin xyz=\"0.2 0 0\"/><mass value=\"" +
+         std::to_string(mass) + "\"/><inertia ixx=\"0\" iyy=\"0\" izz=\"" + std::to_string(inertia) +
          "\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link>";
 }
 
 std::string joint(const std::string& name, const std::string& type, const std::string& parent,
                   const std::string& child, double reach, const std::string& axis, double effort) {
-  return "<joint name=\"" + name + "\" type=\"" + type + "\"><parent link=\"" + parent + "\"/><child link=\"" +
-         child + "\"/><origin xyz=\"" + std::to_string(reach) + " 0 0\"/><axis xyz=\"" + axis +
-         "\"/><limit lower=\"-2\" upper=\"2\" velocity=\"2\" effort=\"" + std::to_string(effort) +
-         "\"/></joint>";
+  return "<joint name=\"" + name + "\" type=\"" + type + "\"><parent link=\"" + parent +
+         "\"/><child link=\"" + child + "\"/><origin xyz=\"" + std::to_string(reach) +
+         " 0 0\"/><axis xyz=\"" + axis + "\"/><limit lower=\"-2\" upper=\"2\" velocity=\"2\" effort=\"" +
+         std::to_string(effort) + "\"/></joint>";
 }
 
 /// A carriage on one rail with a planar arm of two links, `scale` times as heavy and as strong.
 Robot crane(double scale) {
   const TemporaryFile file(
-      "crane.urdf", "<robot name=\"crane\"><link name=\"rail\"/>" +
-                        link("carriage", scale * kCarriage, 1.0 * scale) +
-                        link("upper", scale * kLink, 0.125 * scale) + link("lower", scale * kLink, 0.125 * scale) +
-                        joint("slide", "prismatic", "rail", "carriage", 0.0, "1 0 0", 256.0 * scale) +
-                        joint("shoulder", "revolute", "carriage", "upper", 0.0, "0 0 1", 64.0 * scale) +
-                        joint("elbow", "revolute", "upper", "lower", 0.5, "0 0 1", 32.0 * scale) + "</robot>");
+      "crane.urdf",
+      "<robot name=\"crane\"><link name=\"rail\"/>" + link("carriage", scale * kCarriage, 1.0 * scale) +
+          link("upper", scale * kLink, 0.125 * scale) + link("lower", scale * kLink, 0.125 * scale) +
+          joint("slide", "prismatic", "rail", "carriage", 0.0, "1 0 0", 256.0 * scale) +
+          joint("shoulder", "revolute", "carriage", "upper", 0.0, "0 0 1", 64.0 * scale) +
+          joint("elbow", "revolute", "upper", "lower", 0.5, "0 0 1", 32.0 * scale) + "</robot>");
   return Robot::from_urdf(file.path(), RobotConfig{});
 }
 
@@ -53,7 +53,8 @@ Vector torques(const Robot& robot, int seed) {
   controller.add(2, Posture(robot, random.vector(3, 0.3)));
   Vector q = random.vector(3, 0.5);
   if (random.chance(0.5)) {
-    q[1] = random.normal() * 0.01;  // the arm along the rail: all joints but the slide move the hand across it
+    q[1] =
+        random.normal() * 0.01;  // the arm along the rail: all joints but the slide move the hand across it
     q[2] = 0.0;
   }
   Vector u(3);

@@ -86,6 +86,22 @@ BOOST_AUTO_TEST_CASE(no_method_allocates) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(smoothing_does_not_allocate) {
+  for (int seed = 0; seed < 12; ++seed) {
+    Random random(seed);
+    const Stack stack =
+        random_stack(random, {.n = 8, .levels = 3, .task_transitions = seed % 2, .beyond = true});
+    Law law(stack, {.smoothing = Smoothing{}});
+    Solution solution(8);
+    {
+      const NoAllocation guard("smoothing");
+      law.solve(stack, solution);
+    }
+    BOOST_TEST(solution.laws >= Smoothing{}.solutions, "seed " << seed);
+    BOOST_TEST(solution.y.allFinite(), "seed " << seed);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(no_method_allocates_at_a_singularity) {
   Random random(1);
   const StackPath path(random, 7, true);

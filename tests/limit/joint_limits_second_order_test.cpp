@@ -119,6 +119,32 @@ BOOST_AUTO_TEST_CASE(bounds_hold_the_envelope_as_a_servo_would) {
   BOOST_TEST(std::abs(v) < 1e-3);
 }
 
+// docs/theory.md, 5.6: a period cuts the envelope's curve, by so much at most.
+BOOST_AUTO_TEST_CASE(speed_exceeds_the_envelope_by_its_share_at_most) {
+  const Robot robot = youbot();
+  const double servo = 10.0;
+  const double share = 0.1;
+  const double dt =
+      share * (servo - (1.0 + share) * kGain) / (2.51 * std::pow(1.0 + share, 3) * kGain * kGain);
+  JointLimits limits(robot, {.gain = kGain, .servo_gain = servo});
+  const double margin = limits.options().margin;
+  Random random(1);
+  int above = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const double distance = margin + std::pow(10.0, random.uniform(-6.0, 0.5));
+    const double most = (1.0 + share) * limits.allowed_speed(kJoint, distance - margin);
+    const double v = random.chance(0.5) ? most : random.uniform(-1.0, most);
+    place(limits, robot, distance, v);
+    const double a = limits.motion_upper()[kJoint];
+    const double next = distance - dt * v - 0.5 * dt * dt * a;
+    const double allowed = limits.allowed_speed(kJoint, next - margin);
+    BOOST_TEST_REQUIRE(next >= margin, distance << " " << v);
+    BOOST_TEST_REQUIRE(v + dt * a <= (1.0 + share) * allowed + 1e-12, distance << " " << v);
+    above += v < most && v + dt * a > allowed ? 1 : 0;
+  }
+  BOOST_TEST(above > 0);  // without a share the set would be left
+}
+
 BOOST_AUTO_TEST_CASE(bounds_leave_an_interval_everywhere) {
   const Robot robot = youbot();
   JointLimits limits(robot, options());

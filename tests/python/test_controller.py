@@ -215,3 +215,23 @@ def test_a_task_moves_to_another_level_and_is_replaced_without_a_jump(robot):
     c.add(tope.Damping(), level=4)
     with pytest.raises(tope.Error, match="no task with handle"):
         c.move(reach, level=2)
+
+
+def test_smoothing_weakens_kinks_and_keeps_bounds(robot: tope.Robot) -> None:
+    def commands(smoothing: tope.Smoothing | None) -> np.ndarray:
+        limits = tope.LimitOptions(unilateral=tope.UnilateralOptions(smoothing=smoothing))
+        c = controller(robot, limits=limits)
+        beyond = robot.position_upper[4] + 0.1
+        c.add(tope.JointPosition(target={"arm_joint_2": beyond}), level=1)
+        q, u = Q0.copy(), []
+        q[4] = robot.position_upper[4] - 0.4
+        for cycle in range(2000):
+            u.append(c.update(q, np.zeros(8), cycle * 1e-3))
+            q += 1e-3 * u[-1]
+        assert np.all(q < robot.position_upper)
+        return np.array(u)
+
+    plain, smooth = (np.abs(np.diff(commands(s), 2, axis=0)).max() for s in (None, tope.Smoothing()))
+    assert smooth < 0.6 * plain
+    with pytest.raises(tope.ConfigError, match=r"smoothing\.solutions must be from 2 to 16, got 1"):
+        tope.Smoothing(solutions=1)

@@ -366,6 +366,17 @@ BOOST_AUTO_TEST_CASE(limit_servo_takes_one_pair_of_gains) {
                 {"scenario.yaml:12: limits.gain", "one pair or the other"});
 }
 
+BOOST_AUTO_TEST_CASE(smoothing_is_read_or_refused) {
+  const TemporaryFile file("scenario.yaml", replaced(good_scenario(), "buffer: 0.12",
+                                                     "unilateral: {smoothing: {solutions: 5, spread: 4}}"));
+  const auto smoothing = Scenario::load(file.path()).controller.limits.unilateral.smoothing;
+  BOOST_TEST(smoothing->solutions == 5);
+  BOOST_TEST(smoothing->spread == 4.0);
+  check_refused("buffer: 0.12", "unilateral: {smoothing: {solutions: 1}}",
+                {"scenario.yaml:10: limits.unilateral.smoothing.solutions", "must be from 2 to 16, got 1"});
+  check_refused("buffer: 0.12", "unilateral: {smoothing: {width: 1}}", {"scenario.yaml:10:", "width"});
+}
+
 BOOST_AUTO_TEST_CASE(wrong_models_and_unsafe_measures_are_said) {
   const std::string torque = replaced(good_scenario(), "mode: velocity", "mode: torque");
   const TemporaryFile file("scenario.yaml", torque);

@@ -112,6 +112,7 @@ class Controller {
   bool replaced(std::size_t row) const;
   void advance_tasks(double t);
   Unilateral::Options unilateral_options() const;
+  double widest_headroom() const;
   LawOptions law_options() const;
   void share_headroom();
   void rebuild();

@@ -34,6 +34,7 @@ struct UnilateralOptions {
   std::optional<double> headroom{};
   std::optional<double> inequality_headroom{};
   std::optional<double> softness{};
+  std::optional<Smoothing> smoothing{};  ///< weaker kinks, at so many times the cost
 
   /// `heaviest` [kg or kg m2]: torque mode, heaviest_joint of the robot.
   Unilateral::Options resolved(Mode mode, double heaviest) const;

@@ -4,9 +4,10 @@
 #include <tope/law/hierarchy.hpp>
 #include <tope/law/limit_method.hpp>
 #include <tope/law/multilinear.hpp>
-#include <tope/law/unilateral.hpp>
+#include <tope/law/smooth_unilateral.hpp>
 
 #include <memory>
+#include <optional>
 #include <variant>
 
 namespace tope {
@@ -15,6 +16,7 @@ struct LawOptions {
   LimitMethod method = LimitMethod::unilateral;
   Hierarchy::Options hierarchy{};
   Unilateral::Options unilateral{};
+  std::optional<Smoothing> smoothing{};  ///< of the method `unilateral`
 };
 
 /// The complete law of one limit method: which phi(S), over which activations, blended how.

@@ -1,0 +1,160 @@
+"""Run: make parameters.
+
+What the options of `unilateral` do: goals reached beside a limit on six robots (near_goals.py), and how
+steep the command gets near limits, ties and singularities of the youBot (continuity.py), for the defaults and
+for sets that differ from them in one option. Writes the tables of docs/parameters.md.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import continuity
+import near_goals
+import scenario
+from rich.progress import track
+
+from tope import peers
+
+PAGE = near_goals.ROOT / "docs" / "parameters.md"
+MARK = "<!-- tables: make parameters -->"
+SETS: Mapping[str, Sequence[str]] = {
+    "velocity": (
+        "",
+        *(f"lock={value}" for value in (0.1, 0.05, 0.02, 0.01)),
+        *(f"damping={value}" for value in (0.1, 0.03)),
+        *(f"headroom={value}" for value in (0.05, 0.002)),
+        *(f"margin={value}" for value in (3e-3, 3e-4)),
+    ),
+    "torque": (
+        "",
+        *(f"lock={value}" for value in (0.2, 0.05, 0.03)),
+        *(f"damping={value}" for value in (0.2, 0.05)),
+        *(f"headroom={value}" for value in (0.5, 0.2, 0.05)),
+        *(f"margin={value}" for value in (3e-3, 3e-4)),
+    ),
+}
+LOWEST = ("rest", "posture")
+FINE = 4  # goals of each robot that are run at a tenth of the period too
+HEADER = (
+    "option",
+    "reached, joints at rest below",
+    "posture below",
+    "ratio ≥ 8",
+    "largest jump",
+    "youBot's states with ratio ≥ 8",
+    "largest jump there",
+)
+
+
+def goals(mode: str, count: int, out: Path) -> list[near_goals.Job]:
+    """All sets of options on all robots."""
+    result = []
+    for robot in near_goals.SCENARIOS:
+        machine = near_goals.machine(robot, mode)
+        drawn = [near_goals.draw(machine, number) for number in range(count)]
+        for lowest in LOWEST:
+            folder = out / mode / lowest / robot
+            folder.mkdir(parents=True, exist_ok=True)
+            file = near_goals.write(folder / "goals.txt", lowest, machine, drawn, FINE)
+            for options in SETS[mode]:
+                program = peers.Program("tope", "Python", mode, options or peers.DEFAULT)
+                result.append(near_goals.Job(robot, lowest, program, drawn, file))
+    return result
+
+
+def reached(runs: Sequence[Mapping[str, Any]]) -> str:
+    """How many of those at the ordinary period."""
+    coarse = [run for run in runs if run["dt"] == scenario.DT]
+    return f"{sum(near_goals.miss(run) < peers.REACHED for run in coarse)} of {len(coarse)}"
+
+
+def steepness(found: Sequence[Mapping[str, Any]]) -> tuple[str, str]:
+    """How many jumps fall with the period, and the largest at the ordinary one."""
+    pairs = []
+    largest = 0.0
+    for each in found:
+        coarse = {run["goal"]: run["jump"] for run in each["runs"] if run["dt"] == scenario.DT}
+        pairs += [(coarse[run["goal"]], run["jump"]) for run in each["runs"] if run["dt"] < scenario.DT]
+        largest = max(largest, *coarse.values())
+    fallen = sum(jump >= near_goals.CONTINUOUS * fine for jump, fine in pairs)
+    return f"{fallen} of {len(pairs)}", f"{100 * largest:.2g} %"
+
+
+def states(mode: str, options: str, count: int) -> tuple[str, str]:
+    """The same of states of the youBot; a margin has no part in it."""
+    named = dict(part.split("=") for part in options.split(",") if part)
+    if "margin" in named:
+        return "-", "-"
+    follow = partial(
+        continuity.run, mode=mode, method=peers.DEFAULT, options={k: float(v) for k, v in named.items()}
+    )
+    with ProcessPoolExecutor() as pool:
+        outcomes = [
+            each for each in pool.map(follow, range(count), chunksize=20) if each.jumps[0] > continuity.STILL
+        ]
+    fallen = sum(each.ratio >= continuity.CONTINUOUS for each in outcomes)
+    return f"{fallen} of {len(outcomes)}", f"{100 * max(each.jumps[0] for each in outcomes):.2g} %"
+
+
+def table(mode: str, count: int, state_count: int, out: Path) -> str:
+    """Of one mode."""
+    wanted = goals(mode, count, out)
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        results = pool.map(near_goals.Job.run, wanted)
+        found = list(track(results, total=len(wanted), description=mode, transient=True))
+    (out / f"{mode}.json").write_text(json.dumps(found, indent=1), encoding="utf-8")
+    rows = []
+    for options in SETS[mode]:
+        mine = [
+            each
+            for job, each in zip(wanted, found, strict=True)
+            if job.program.configuration == (options or peers.DEFAULT)
+        ]
+        runs = {
+            name: [run for each in mine if each["lowest"] == name for run in each["runs"]] for name in LOWEST
+        }
+        rows.append(
+            (
+                f"`{options}`" if options else "defaults",
+                *(reached(runs[name]) for name in LOWEST),
+                *steepness(mine),
+                *states(mode, options, state_count),
+            )
+        )
+    return near_goals.table(HEADER, rows)
+
+
+def main() -> None:
+    """Measure, and write the page."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("--count", type=int, default=20, help="goals of each robot")
+    parser.add_argument("--states", type=int, default=900, help="states of the youBot")
+    parser.add_argument(
+        "--out", type=Path, default=near_goals.ROOT / "runs" / "parameters", help="folder of all figures"
+    )
+    parser.add_argument(
+        "--page", action="store_true", help=f"write the tables to {PAGE.relative_to(near_goals.ROOT)}"
+    )
+    arguments = parser.parse_args()
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    parts = [
+        f"## {mode.capitalize()} mode\n\n{table(mode, arguments.count, arguments.states, arguments.out)}"
+        for mode in SETS
+    ]
+    text = "\n\n".join(parts)
+    print(text)
+    if arguments.page:
+        before = PAGE.read_text(encoding="utf-8").partition(MARK)[0]
+        PAGE.write_text(f"{before}{MARK}\n\n{text}\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
