@@ -61,20 +61,21 @@ void bind_options(nb::module_& module) {
           "__init__",
           [](UnilateralOptions* self, OptionalNumber damping, OptionalNumber fine_damping,
              OptionalNumber fine_below, OptionalNumber lock, OptionalNumber headroom,
-             OptionalNumber inequality_headroom, OptionalNumber softness,
+             OptionalNumber free_headroom, OptionalNumber inequality_headroom, OptionalNumber softness,
              const std::optional<Smoothing>& smoothing) {
             new (self) UnilateralOptions{.damping = damping,
                                          .fine_damping = fine_damping,
                                          .fine_below = fine_below,
                                          .lock = lock,
                                          .headroom = headroom,
+                                         .free_headroom = free_headroom,
                                          .inequality_headroom = inequality_headroom,
                                          .softness = softness,
                                          .smoothing = smoothing};
           },
           nb::kw_only(), "damping"_a = nb::none(), "fine_damping"_a = nb::none(), "fine_below"_a = nb::none(),
-          "lock"_a = nb::none(), "headroom"_a = nb::none(), "inequality_headroom"_a = nb::none(),
-          "softness"_a = nb::none(), "smoothing"_a = nb::none(),
+          "lock"_a = nb::none(), "headroom"_a = nb::none(), "free_headroom"_a = nb::none(),
+          "inequality_headroom"_a = nb::none(), "softness"_a = nb::none(), "smoothing"_a = nb::none(),
           "What is None is chosen for the mode and the robot; no smoothing.");
   nb::class_<PotentialFieldOptions>(module, "PotentialFieldOptions",
                                     "Parameters of the method `potential_field`.")

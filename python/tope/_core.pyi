@@ -247,12 +247,12 @@ class Smoothing:
     The mean of `solutions` commands whose headrooms are between the first and `1 + spread` times that: weaker kinks where bounds become active, at so many times the cost.
     """
 
-    def __init__(self, *, solutions: int = 3, spread: float = 8.0) -> None: ...
+    def __init__(self, *, solutions: int = 3, spread: float = 3.0) -> None: ...
 
 class UnilateralOptions:
     """Parameters of the method `unilateral`."""
 
-    def __init__(self, *, damping: float | None = None, fine_damping: float | None = None, fine_below: float | None = None, lock: float | None = None, headroom: float | None = None, inequality_headroom: float | None = None, softness: float | None = None, smoothing: Smoothing | None = None) -> None:
+    def __init__(self, *, damping: float | None = None, fine_damping: float | None = None, fine_below: float | None = None, lock: float | None = None, headroom: float | None = None, free_headroom: float | None = None, inequality_headroom: float | None = None, softness: float | None = None, smoothing: Smoothing | None = None) -> None:
         """What is None is chosen for the mode and the robot; no smoothing."""
 
 class PotentialFieldOptions:

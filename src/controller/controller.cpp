@@ -1,3 +1,5 @@
+#include "../common/require_positive.hpp"
+
 #include <tope/common/error.hpp>
 #include <tope/controller/controller.hpp>
 #include <tope/law/command_bounds.hpp>
@@ -118,6 +120,9 @@ Controller::Controller(const Robot& robot, const ControllerOptions& options)
       terms_(robot_),
       authority_(torque_mode() ? braking_authority(robot_) : Vector()),
       heaviest_(torque_mode() ? heaviest_joint(robot_) : 0.0),
+      headroom_(Vector::Zero(robot_.nv())),
+      free_headroom_(Vector::Zero(robot_.nv())),
+      headroom_unit_(unilateral_options().headroom),
       limits_(robot_, with_gain(robot_, options_, authority_)),
       collisions_(make_collisions(robot_, options_.limits, limits_)),
       full_speed_drift_(collisions_ && !torque_mode() ? tope::full_speed_drift(robot_, *collisions_) : 0.0),
@@ -148,26 +153,41 @@ Controller::Controller(const Robot& robot, const ControllerOptions& options)
   if (options_.limits.method == LimitMethod::potential_field) {
     field_.emplace(robot_, options_.limits.potential_field);
   }
-  if (!options_.limits.unilateral.headroom) {
-    share_headroom();
-  }
+  choose_headroom();
   if (options_.limits.enforce_conditions) {
     require_conditions(conditions());
   }
   rebuild();
 }
 
-/// Joints with little room between their bounds take less of it.
-void Controller::share_headroom() {
-  const double most = widest_headroom();
-  for (int j = 0; j < robot_.nv(); ++j) {
-    stack_.headroom_share[j] = suitable_headroom(limits_, j, torque_mode(), most) / most;
+/// What is not given suits the joint: those with little room between their bounds take less.
+void Controller::choose_headroom() {
+  const UnilateralOptions& given = options_.limits.unilateral;
+  const double at_limit = unilateral_options().headroom;
+  const double away = given.free_headroom.value_or((torque_mode() ? 10.0 : 5.0) * at_limit);
+  require_positive("unilateral: free_headroom", away);
+  if (given.headroom && away < at_limit) {
+    throw ConfigError("unilateral: free_headroom " + std::to_string(away) + " must be at least headroom " +
+                      std::to_string(at_limit));
   }
+  for (int j = 0; j < robot_.nv(); ++j) {
+    const double suitable =
+        suitable_headroom(limits_, j, torque_mode(), widest_factor() * away) / widest_factor();
+    const double free = given.free_headroom ? away : suitable;
+    headroom_[j] = given.headroom ? at_limit : std::min(at_limit, free);
+    free_headroom_[j] = std::max(free, headroom_[j]);
+  }
+}
+
+/// Of the headroom, with smoothing.
+double Controller::widest_factor() const {
+  const auto& smoothing = options_.limits.unilateral.smoothing;
+  return smoothing ? smoothing->factor(1.0) : 1.0;
 }
 
 std::vector<Condition> Controller::conditions() const {
   const LimitMethod method = options_.limits.method;
-  const Vector headroom = widest_headroom() * stack_.headroom_share;
+  const Vector headroom = widest_factor() * free_headroom_;
   std::vector<Condition> conditions =
       torque_mode() ? torque_conditions(robot_, limits_, method, headroom, options_.dt, authority_)
                     : velocity_conditions(robot_, limits_, method, headroom, options_.dt);
@@ -267,12 +287,6 @@ double Controller::activation(TaskHandle handle) const { return entry(handle).ac
 
 Unilateral::Options Controller::unilateral_options() const {
   return options_.limits.unilateral.resolved(options_.mode, heaviest_);
-}
-
-/// What a level 0 may leave free of a joint's bounds.
-double Controller::widest_headroom() const {
-  const auto& smoothing = options_.limits.unilateral.smoothing;
-  return unilateral_options().headroom * (smoothing ? smoothing->factor(1.0) : 1.0);
 }
 
 LawOptions Controller::law_options() const {
@@ -402,6 +416,9 @@ void Controller::fill_limits(const VectorArg& q, const VectorArg& v) {
   stack_.limit_target = limits_.target();
   stack_.motion_lower = limits_.motion_lower();
   stack_.motion_upper = limits_.motion_upper();
+  limits_.headroom(headroom_, free_headroom_, stack_.headroom_lower, stack_.headroom_upper);
+  stack_.headroom_lower /= headroom_unit_;
+  stack_.headroom_upper /= headroom_unit_;
   if (collisions_) {
     fill_collisions(*collisions_);
   }

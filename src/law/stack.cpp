@@ -10,7 +10,8 @@ Stack::Stack(int n, int inequalities)
       limit_target(Vector::Zero(n)),
       motion_lower(Vector::Zero(n)),
       motion_upper(Vector::Zero(n)),
-      headroom_share(Vector::Ones(n)),
+      headroom_lower(Vector::Ones(n)),
+      headroom_upper(Vector::Ones(n)),
       inequality(Matrix::Zero(inequalities, n)),
       inequality_lower(Vector::Zero(inequalities)) {}
 

@@ -168,8 +168,8 @@ double Unilateral::squared_damping(double squared_residual) const {
 void Unilateral::set_bounds(const Stack& stack, int level) {
   const double headroom = options_.headroom / (1.0 + level);
   const auto motion = motion_.head(size_);
-  lower_.head(size_) = stack.motion_lower - motion + headroom * stack.headroom_share;
-  upper_.head(size_) = stack.motion_upper - motion - headroom * stack.headroom_share;
+  lower_.head(size_) = stack.motion_lower - motion + headroom * stack.headroom_lower;
+  upper_.head(size_) = stack.motion_upper - motion - headroom * stack.headroom_upper;
   const auto others = motion_.segment(size_, inequalities_);
   lower_.tail(inequalities_) =
       (stack.inequality_lower - slack_ - others).array() + options_.inequality_headroom / (1.0 + level);

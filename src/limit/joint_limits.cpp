@@ -29,6 +29,8 @@ JointLimits::JointLimits(const Robot& robot, const JointLimitOptions& options)
       side_(Vector::Zero(robot.nv())),
       motion_lower_(Vector::Zero(robot.nv())),
       motion_upper_(Vector::Zero(robot.nv())),
+      lower_at_rest_(Vector::Zero(robot.nv())),
+      upper_at_rest_(Vector::Zero(robot.nv())),
       near_upper_(static_cast<std::size_t>(robot.nv()), 0),
       near_lower_(static_cast<std::size_t>(robot.nv()), 0),
       engagement_slack_(Vector::Zero(robot.nv())) {
@@ -95,6 +97,8 @@ void JointLimits::update(const VectorArg& q) {
     const double behind = gain_[j] * (to_lower - options_.margin) + lower_receding(j);
     motion_upper_[j] = std::clamp(ahead, -0.5 * v_max, v_max);
     motion_lower_[j] = -std::clamp(behind, -0.5 * v_max, v_max);
+    upper_at_rest_[j] = std::max(0.0, motion_upper_[j]);
+    lower_at_rest_[j] = std::max(0.0, -motion_lower_[j]);
     note_distances(j, to_upper, to_lower);
   }
 }
@@ -141,6 +145,11 @@ double JointLimits::allowed_acceleration(int joint, double distance, double rece
   return -allowed.slope * (speed - receding) - options_.servo_gain * (speed - allowed.speed + slack);
 }
 
+/// Torque mode: what a joint may be accelerated by towards a limit, were it at rest.
+double JointLimits::bound_at_rest(int joint, double distance, double receding) const {
+  return options_.servo_gain * std::max(0.0, envelope(joint, distance - options_.margin, receding).speed);
+}
+
 void JointLimits::update_second_order(const VectorArg& q, const VectorArg& v) {
   beyond_ = -1;
   furthest_beyond_ = 0.0;
@@ -169,9 +178,23 @@ void JointLimits::update_second_order(const VectorArg& q, const VectorArg& v) {
     }
     motion_upper_[j] = allowed_acceleration(j, to_upper - options_.margin, upper_away, v[j], 0.0);
     motion_lower_[j] = -allowed_acceleration(j, to_lower - options_.margin, lower_away, -v[j], 0.0);
+    upper_at_rest_[j] = bound_at_rest(j, to_upper, upper_away);
+    lower_at_rest_[j] = bound_at_rest(j, to_lower, lower_away);
     note_distances(j, to_upper, to_lower);
   }
   engagement_slack_ = options_.servo_gain * gain_.cwiseProduct(buffer_);
+}
+
+void JointLimits::headroom(const Vector& at_limit, const Vector& away, Vector& lower, Vector& upper) const {
+  for (int j = 0; j < size(); ++j) {
+    const double added = away[j] - at_limit[j];
+    // as written it also takes an infinite bound; without anything to add the quotient may be zero by zero
+    const auto with = [&](double bound) {
+      return added > 0.0 ? at_limit[j] + added * (1.0 - 2.0 * added / (bound + 2.0 * added)) : at_limit[j];
+    };
+    lower[j] = with(lower_at_rest_[j]);
+    upper[j] = with(upper_at_rest_[j]);
+  }
 }
 
 void JointLimits::blended_acceleration_bounds(const Vector& activation, double dt, Vector& lower,

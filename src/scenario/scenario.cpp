@@ -121,6 +121,7 @@ LimitOptions read_limits(const YamlReader& yaml, Robot& robot, std::vector<Movin
     limits.unilateral.fine_below = law->optional_positive("fine_below");
     limits.unilateral.lock = law->optional_positive("lock");
     limits.unilateral.headroom = law->optional_positive("headroom");
+    limits.unilateral.free_headroom = law->optional_positive("free_headroom");
     limits.unilateral.inequality_headroom = law->optional_positive("inequality_headroom");
     limits.unilateral.softness = law->optional_positive("softness");
     if (const auto smoothing = law->optional_map("smoothing")) {

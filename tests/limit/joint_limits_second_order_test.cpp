@@ -119,6 +119,30 @@ BOOST_AUTO_TEST_CASE(bounds_hold_the_envelope_as_a_servo_would) {
   BOOST_TEST(std::abs(v) < 1e-3);
 }
 
+BOOST_AUTO_TEST_CASE(headroom_grows_with_the_bound_at_rest) {
+  const Robot robot = youbot();
+  const Vector at_limit = Vector::Constant(8, 0.1);
+  const Vector away = Vector::Constant(8, 1.0);
+  Vector lower(8);
+  Vector upper(8);
+  double last = 0.0;
+  for (const double beyond_margin : {-0.1, 0.0, 1e-3, 0.01, 0.1, 1.0}) {
+    for (const double v : {-0.5, 0.0, 0.5}) {  // none of the speed's business
+      JointLimits limits(robot, options());
+      place(limits, robot, limits.options().margin + beyond_margin, v);
+      limits.headroom(at_limit, away, lower, upper);
+      const double bound = kServo * std::max(0.0, limits.allowed_speed(kJoint, beyond_margin));
+      BOOST_TEST(upper[kJoint] == 0.1 + 0.9 * bound / (bound + 1.8), boost::test_tools::tolerance(1e-12));
+    }
+    BOOST_TEST(upper[kJoint] >= last);
+    last = upper[kJoint];
+  }
+  JointLimits limits(robot, options());
+  place(limits, robot, 0.5, 0.0);
+  limits.headroom(at_limit, at_limit, lower, upper);
+  BOOST_TEST(upper[kJoint] == 0.1);
+}
+
 // docs/theory.md, 5.6: a period cuts the envelope's curve, by so much at most.
 BOOST_AUTO_TEST_CASE(speed_exceeds_the_envelope_by_its_share_at_most) {
   const Robot robot = youbot();

@@ -44,6 +44,8 @@ void set_limits(Random& random, const RandomStackOptions& options, Stack& stack)
     stack.limit_target[j] = random.normal();
     stack.motion_lower[j] = -random.uniform(0.05, 1.0);
     stack.motion_upper[j] = random.uniform(0.05, 1.0);
+    stack.headroom_lower[j] = random.uniform(0.5, 2.5);
+    stack.headroom_upper[j] = random.uniform(0.5, 2.5);
     if (options.beyond && random.chance(0.2)) {
       const double shift = random.chance(0.5) ? 1.5 : -1.5;
       stack.motion_lower[j] += shift;

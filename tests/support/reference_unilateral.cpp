@@ -100,9 +100,10 @@ std::vector<ReferenceLevel> reference_unilateral(const Stack& stack, const Selec
     ReferenceLevel entry{
         .level = level,
         .open = open,
-        .lower = joined(stack.motion_lower.array() + headroom,
+        .lower = joined(stack.motion_lower + headroom * stack.headroom_lower,
                         (stack.inequality_lower - slack).array() + other_headroom),
-        .upper = joined(stack.motion_upper.array() - headroom, Vector::Constant(slack.size(), kFar)),
+        .upper = joined(stack.motion_upper - headroom * stack.headroom_upper,
+                        Vector::Constant(slack.size(), kFar)),
         .mu = level == 0 ? 1.0 : weight(options, level_target(stack, selection, level) - a * y),
         .a = a,
         .b = level_target(stack, selection, level),

@@ -112,9 +112,9 @@ class Controller {
   bool replaced(std::size_t row) const;
   void advance_tasks(double t);
   Unilateral::Options unilateral_options() const;
-  double widest_headroom() const;
   LawOptions law_options() const;
-  void share_headroom();
+  void choose_headroom();
+  double widest_factor() const;
   void rebuild();
   bool valid(const VectorArg& q, const VectorArg& v, double t, const Eigen::Ref<Vector>& u) const;
   bool torque_mode() const { return options_.mode == Mode::torque; }
@@ -135,8 +135,11 @@ class Controller {
   Robot robot_;
   ControllerOptions options_;
   RobotTerms terms_;
-  Vector authority_;  // what each drive can brake with, torque mode (n)
-  double heaviest_;   // inertia of a joint, torque mode [kg or kg m2]
+  Vector authority_;      // what each drive can brake with, torque mode (n)
+  double heaviest_;       // inertia of a joint, torque mode [kg or kg m2]
+  Vector headroom_;       // of each joint at its limits (n)
+  Vector free_headroom_;  // where its bounds are wide (n)
+  double headroom_unit_;  // the law's, of which the stack holds multiples
   JointLimits limits_;
   std::optional<CollisionLimits> collisions_;
   double full_speed_drift_;  // of the distances, velocity mode [m/s2]

@@ -24,7 +24,7 @@ enum class NullSpace {
 };
 
 /// Unilateral::Options; what is unset is chosen for the mode, since the units differ, and for the robot: damping and lock
-/// of torque mode fall with the inertia of its heaviest joint, and a headroom is smaller for joints whose bounds leave
+/// of torque mode fall with the inertia of its heaviest joint, and headrooms are smaller for joints whose bounds leave
 /// less room. docs/parameters.md shows how they were chosen.
 struct UnilateralOptions {
   std::optional<double> damping{};
@@ -32,6 +32,8 @@ struct UnilateralOptions {
   std::optional<double> fine_below{};
   std::optional<double> lock{};
   std::optional<double> headroom{};
+  /// Where a bound is wide; five times `headroom` unless set, in torque mode ten times.
+  std::optional<double> free_headroom{};
   std::optional<double> inequality_headroom{};
   std::optional<double> softness{};
   std::optional<Smoothing> smoothing{};  ///< weaker kinks, at so many times the cost

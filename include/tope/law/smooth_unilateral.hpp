@@ -9,7 +9,7 @@ namespace tope {
 /// How far the kinks of `unilateral` are smoothed.
 struct Smoothing {
   int solutions = 3;    ///< averaged, 2 to 16; each costs a law of its own
-  double spread = 8.0;  ///< s: their headrooms are between eta and (1 + s) eta
+  double spread = 3.0;  ///< s: their headrooms are between eta and (1 + s) eta
 
   /// What multiplies the headroom at a place x in [0, 1] of the spread.
   double factor(double x) const { return 1.0 + spread * x; }

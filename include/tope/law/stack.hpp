@@ -29,7 +29,8 @@ struct Stack {
   Vector limit_target;       ///< motion asked for by the limit row where it is active (n)
   Vector motion_lower;       ///< bounds of the motion (n), for the unilateral law
   Vector motion_upper;
-  Vector headroom_share;  ///< of the unilateral law's headroom, for each joint's bounds (n)
+  Vector headroom_lower;  ///< multiples of the unilateral law's headroom that the bounds take (n)
+  Vector headroom_upper;
   /// Limits on anything but the joints, for the unilateral law: C y >= lower, C (p x n), lower (p).
   Matrix inequality;
   Vector inequality_lower;

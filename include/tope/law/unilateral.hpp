@@ -19,7 +19,8 @@ namespace tope {
 ///       subject to lower + eta_k <= T (y + M z) <= upper - eta_k,  C (y + M z) >= c - s + eta_k
 ///   y <- y + M z
 ///   M <- M (I - sum s(sigma) v v^T),   sigma, v singular values and right vectors of A_k M
-/// with s the quintic step from 0 at sigma = 0 to 1 at `lock`, and eta_k = headroom / (1 + k) for level number k. Near
+/// with s the quintic step from 0 at sigma = 0 to 1 at `lock`, and eta_k = headroom / (1 + k) for level number k,
+/// times what the stack says of each bound. Near
 /// `lock` a direction opens with the third power of what is missing: an opening of lambda is all that a lower level
 /// needs to use the direction, and a steeper step would hand it over within a few milliseconds.
 ///

@@ -77,6 +77,11 @@ class JointLimits {
   const Vector& target() const { return target_; }          ///< motion the row asks for (n)
   const Vector& motion_lower() const { return motion_lower_; }
   const Vector& motion_upper() const { return motion_upper_; }
+  /// What a law leaves free of each bound (n), so that its command turns gently where bounds and tasks meet: `at_limit`
+  /// (n) at the limit, where the bound B of a joint at rest is zero, and more with B, up to `away` >= at_limit (n):
+  ///   at_limit + (away - at_limit) B / (B + 2 (away - at_limit))
+  /// At most half of B is added: a joint still comes to rest where `at_limit` alone would let it.
+  void headroom(const Vector& at_limit, const Vector& away, Vector& lower, Vector& upper) const;
   /// Speed bounds (n) of a command that blends limit rows: v_max away from the limits and, across the buffer,
   /// (1 - xi) v_max + xi target towards the limit. What a blend adds from laws without the row must not exceed
   /// (1 - xi) v_max: bounded by v_max alone it can carry the joint through its limit. `activation` (n) is xi, zero
@@ -117,6 +122,7 @@ class JointLimits {
   Envelope envelope(int joint, double distance, double receding) const;
   /// Acceleration allowed towards a limit at `distance` and approach speed `speed`, `slack` below the envelope.
   double allowed_acceleration(int joint, double distance, double receding, double speed, double slack) const;
+  double bound_at_rest(int joint, double distance, double receding) const;
   /// How fast the limit on a side moves away from the joint.
   double upper_receding(int joint) const { return upper_rate_[joint]; }
   double lower_receding(int joint) const { return -lower_rate_[joint]; }
@@ -136,6 +142,8 @@ class JointLimits {
   Vector side_;  // +1 where the upper limit's row applies, -1 the lower's
   Vector motion_lower_;
   Vector motion_upper_;
+  Vector lower_at_rest_;  // what the bounds are, or would be, at rest; not below zero
+  Vector upper_at_rest_;
   std::vector<char> near_upper_;  // 1 where the position limit sets motion_upper_, not the speed limit
   std::vector<char> near_lower_;
   Vector engagement_slack_;  // at which engagement() begins
