@@ -26,4 +26,4 @@ print(
 )
 print(f"distance kept from limits {room:.4f}, largest jump of a torque {100 * jump:.2f} % of its bound")
 if __name__ == "__main__":
-    sys.exit(0 if turn_error < 1e-3 and reach_error < 1e-3 and room > 0 and jump < 0.02 else 1)
+    sys.exit(0 if turn_error < 1e-3 and reach_error < 1e-3 and room > 0 and jump < 0.03 else 1)

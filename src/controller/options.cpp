@@ -12,7 +12,7 @@ Unilateral::Options UnilateralOptions::resolved(Mode mode, double heaviest) cons
     const double least = 1.0 / std::sqrt(heaviest);
     options.damping = std::min(0.1, 0.7 * least);
     options.fine_damping = std::min(options.fine_damping, 0.2 * options.damping);
-    options.lock = std::min(0.08, 0.55 * least);
+    options.lock = std::min(0.06, 0.45 * least);
     options.headroom = 0.1;
     options.inequality_headroom = 0.5;
   }
