@@ -255,12 +255,10 @@ def tables(found: Found) -> str:
 def summary(job: Job, found: Mapping[str, Any]) -> tuple[str, ...]:
     """A program's figures under HEADER."""
     coarse = {run["goal"]: run for run in found["runs"] if run["dt"] == scenario.DT}
-    fine = {run["goal"]: run for run in found["runs"] if run["dt"] < scenario.DT}
-    count = len(coarse)
-    reached = [run for run in coarse.values() if miss(run) < peers.REACHED]
+    reached, count = reached_of(found["runs"])
     others = [miss(run) for run in coarse.values() if miss(run) >= peers.REACHED]
     inside = [coarse[f"goal_{number}"] for number, goal in enumerate(job.goals) if goal.distance < MARGIN]
-    pairs = [(coarse[goal]["jump"], run["jump"]) for goal, run in fine.items()]
+    pairs = jumps(found["runs"])
     ratios = [jump / fine_jump if fine_jump > 0 else math.inf for jump, fine_jump in pairs]
     jump, fine_jump = (f"{100 * median(jumps):.3g} %" for jumps in zip(*pairs, strict=True))
     beyond = max(run["violation"] for run in found["runs"])
@@ -269,7 +267,7 @@ def summary(job: Job, found: Mapping[str, Any]) -> tuple[str, ...]:
     return (
         job.robot,
         job.library,
-        f"{len(reached)} of {count}",
+        f"{reached} of {count}",
         f"{sum(miss(run) < peers.REACHED for run in inside)} of {len(inside)}",
         f"{sum(run['orientation_error'] < peers.REACHED for run in coarse.values())} of {count}",
         f"{1e3 * median(others):.2g}" if others else "-",
@@ -288,13 +286,24 @@ def miss(run: Mapping[str, Any]) -> float:
     return float(max(run["position_error"], run["orientation_error"]))
 
 
+def reached_of(runs: Iterable[Mapping[str, Any]]) -> tuple[int, int]:
+    """How many goals are reached at the ordinary period, of how many."""
+    coarse = [run for run in runs if run["dt"] == scenario.DT]
+    return sum(miss(run) < peers.REACHED for run in coarse), len(coarse)
+
+
+def jumps(runs: Sequence[Mapping[str, Any]]) -> list[tuple[float, float]]:
+    """The largest jump at the ordinary and at the short period, of goals that are run at both."""
+    coarse = {run["goal"]: run["jump"] for run in runs if run["dt"] == scenario.DT}
+    return [(coarse[run["goal"]], run["jump"]) for run in runs if run["dt"] < scenario.DT]
+
+
 def reached(found: Found, lowest: str) -> str:
     """Goals reached with that last task: a row a robot, a column a library."""
     counts: dict[str, dict[str, np.ndarray]] = {"all": {}}  # reached, of so many
     for job, each in found:
         if job.lowest == lowest:
-            runs = [run for run in each["runs"] if run["dt"] == scenario.DT]
-            count = np.array([sum(miss(run) < peers.REACHED for run in runs), len(runs)])
+            count = np.array(reached_of(each["runs"]))
             counts.setdefault(job.robot, {})[job.library] = count
             counts["all"][job.library] = counts["all"].get(job.library, 0) + count
     counts["all"] = counts.pop("all")  # last
@@ -303,6 +312,20 @@ def reached(found: Found, lowest: str) -> str:
         cells = (by_library.get(library) for library in counts["all"])
         rows.append((robot, *("-" if cell is None else f"{cell[0]} of {cell[1]}" for cell in cells)))
     return table(("robot", *counts["all"]), rows)
+
+
+def run_all(wanted: Sequence[Job], at_once: int | None, label: str) -> list[dict[str, Any]]:
+    """What all jobs measured, so many at a time."""
+    with ThreadPoolExecutor(at_once) as pool:
+        return list(track(pool.map(Job.run, wanted), total=len(wanted), description=label, transient=True))
+
+
+def publish(text: str, page: Path | None, mark: str) -> None:
+    """Print the tables, and write them to a page behind its mark."""
+    print(text)
+    if page is not None:
+        before = page.read_text(encoding="utf-8").partition(mark)[0]
+        page.write_text(f"{before}{mark}\n\n{text}\n", encoding="utf-8")
 
 
 def main() -> None:
@@ -320,15 +343,9 @@ def main() -> None:
     arguments = parser.parse_args()
     counts = {"rest": arguments.count, "posture": min(arguments.posture, arguments.count)}
     wanted = jobs(arguments.robots, counts, arguments.fine, arguments.out)
-    with ThreadPoolExecutor(arguments.jobs) as pool:
-        results = pool.map(Job.run, wanted)
-        found = list(track(results, total=len(wanted), description="programs", transient=True))
+    found = run_all(wanted, arguments.jobs, "programs")
     (arguments.out / "figures.json").write_text(json.dumps(found, indent=1), encoding="utf-8")
-    text = tables(list(zip(wanted, found, strict=True)))
-    print(text)
-    if arguments.page:
-        before = PAGE.read_text(encoding="utf-8").partition(MARK)[0]
-        PAGE.write_text(f"{before}{MARK}\n\n{text}\n", encoding="utf-8")
+    publish(tables(list(zip(wanted, found, strict=True))), PAGE if arguments.page else None, MARK)
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ import argparse
 import json
 import os
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -19,7 +19,6 @@ from typing import Any
 import continuity
 import near_goals
 import scenario
-from rich.progress import track
 
 from tope import peers
 
@@ -65,27 +64,17 @@ def goals(mode: str, count: int, out: Path) -> list[near_goals.Job]:
         for lowest in LOWEST:
             folder = out / mode / lowest / robot
             folder.mkdir(parents=True, exist_ok=True)
-            file = near_goals.write(folder / "goals.txt", lowest, machine, drawn, FINE)
+            file = near_goals.write(folder / f"{mode}.txt", lowest, machine, drawn, FINE)
             for options in SETS[mode]:
                 program = peers.Program("tope", "Python", mode, options or peers.DEFAULT)
                 result.append(near_goals.Job(robot, lowest, program, drawn, file))
     return result
 
 
-def reached(runs: Sequence[Mapping[str, Any]]) -> str:
-    """How many of those at the ordinary period."""
-    coarse = [run for run in runs if run["dt"] == scenario.DT]
-    return f"{sum(near_goals.miss(run) < peers.REACHED for run in coarse)} of {len(coarse)}"
-
-
 def steepness(found: Sequence[Mapping[str, Any]]) -> tuple[str, str]:
     """How many jumps fall with the period, and the largest at the ordinary one."""
-    pairs = []
-    largest = 0.0
-    for each in found:
-        coarse = {run["goal"]: run["jump"] for run in each["runs"] if run["dt"] == scenario.DT}
-        pairs += [(coarse[run["goal"]], run["jump"]) for run in each["runs"] if run["dt"] < scenario.DT]
-        largest = max(largest, *coarse.values())
+    pairs = [pair for each in found for pair in near_goals.jumps(each["runs"])]
+    largest = max(run["jump"] for each in found for run in each["runs"] if run["dt"] == scenario.DT)
     fallen = sum(jump >= near_goals.CONTINUOUS * fine for jump, fine in pairs)
     return f"{fallen} of {len(pairs)}", f"{100 * largest:.2g} %"
 
@@ -109,9 +98,7 @@ def states(mode: str, options: str, count: int) -> tuple[str, str]:
 def table(mode: str, count: int, state_count: int, out: Path) -> str:
     """Of one mode."""
     wanted = goals(mode, count, out)
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        results = pool.map(near_goals.Job.run, wanted)
-        found = list(track(results, total=len(wanted), description=mode, transient=True))
+    found = near_goals.run_all(wanted, os.cpu_count(), mode)
     (out / f"{mode}.json").write_text(json.dumps(found, indent=1), encoding="utf-8")
     rows = []
     for options in SETS[mode]:
@@ -126,7 +113,7 @@ def table(mode: str, count: int, state_count: int, out: Path) -> str:
         rows.append(
             (
                 f"`{options}`" if options else "defaults",
-                *(reached(runs[name]) for name in LOWEST),
+                *("{} of {}".format(*near_goals.reached_of(runs[name])) for name in LOWEST),
                 *steepness(mine),
                 *states(mode, options, state_count),
             )
@@ -151,11 +138,7 @@ def main() -> None:
         f"## {mode.capitalize()} mode\n\n{table(mode, arguments.count, arguments.states, arguments.out)}"
         for mode in SETS
     ]
-    text = "\n\n".join(parts)
-    print(text)
-    if arguments.page:
-        before = PAGE.read_text(encoding="utf-8").partition(MARK)[0]
-        PAGE.write_text(f"{before}{MARK}\n\n{text}\n", encoding="utf-8")
+    near_goals.publish("\n\n".join(parts), PAGE if arguments.page else None, MARK)
 
 
 if __name__ == "__main__":
