@@ -170,24 +170,24 @@ void Controller::choose_headroom() {
     throw ConfigError("unilateral: free_headroom " + std::to_string(away) + " must be at least headroom " +
                       std::to_string(at_limit));
   }
+  const double widest = headroom_factor(1.0);
   for (int j = 0; j < robot_.nv(); ++j) {
-    const double suitable =
-        suitable_headroom(limits_, j, torque_mode(), widest_factor() * away) / widest_factor();
+    const double suitable = suitable_headroom(limits_, j, torque_mode(), widest * away) / widest;
     const double free = given.free_headroom ? away : suitable;
     headroom_[j] = given.headroom ? at_limit : std::min(at_limit, free);
     free_headroom_[j] = std::max(free, headroom_[j]);
   }
 }
 
-/// Of the headroom, with smoothing.
-double Controller::widest_factor() const {
+/// What smoothing multiplies the headroom by, at a place in [0, 1] of its spread.
+double Controller::headroom_factor(double place) const {
   const auto& smoothing = options_.limits.unilateral.smoothing;
-  return smoothing ? smoothing->factor(1.0) : 1.0;
+  return smoothing ? smoothing->factor(place) : 1.0;
 }
 
 std::vector<Condition> Controller::conditions() const {
   const LimitMethod method = options_.limits.method;
-  const Vector headroom = widest_factor() * free_headroom_;
+  const Vector headroom = headroom_factor(1.0) * free_headroom_;
   std::vector<Condition> conditions =
       torque_mode() ? torque_conditions(robot_, limits_, method, headroom, options_.dt, authority_)
                     : velocity_conditions(robot_, limits_, method, headroom, options_.dt);
@@ -622,9 +622,7 @@ void Controller::report(const CommandBounds& bounds) {
 
 void Controller::report_collisions(const CollisionLimits& collisions) {
   // level 0 alone would leave every row its whole headroom
-  const auto& smoothing = options_.limits.unilateral.smoothing;
-  const double headroom =
-      unilateral_options().inequality_headroom * (smoothing ? smoothing->factor(0.5) : 1.0);
+  const double headroom = unilateral_options().inequality_headroom * headroom_factor(0.5);
   status_.avoiding_pair = collisions.pressed_by(motion_, headroom);
   if (status_.avoiding_pair >= 0) {
     status_.add(Event::avoiding);

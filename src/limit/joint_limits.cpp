@@ -139,15 +139,9 @@ double JointLimits::allowed_speed(int joint, double distance) const {
   return envelope(joint, distance, 0.0).speed;
 }
 
-double JointLimits::allowed_acceleration(int joint, double distance, double receding, double speed,
+double JointLimits::allowed_acceleration(const Envelope& allowed, double receding, double speed,
                                          double slack) const {
-  const Envelope allowed = envelope(joint, distance, receding);
   return -allowed.slope * (speed - receding) - options_.servo_gain * (speed - allowed.speed + slack);
-}
-
-/// Torque mode: what a joint may be accelerated by towards a limit, were it at rest.
-double JointLimits::bound_at_rest(int joint, double distance, double receding) const {
-  return options_.servo_gain * std::max(0.0, envelope(joint, distance - options_.margin, receding).speed);
 }
 
 void JointLimits::update_second_order(const VectorArg& q, const VectorArg& v) {
@@ -159,13 +153,15 @@ void JointLimits::update_second_order(const VectorArg& q, const VectorArg& v) {
     const double reserve = gain_[j] * buffer_[j];  // slack at which a row begins to act
     const double upper_away = upper_receding(j);
     const double lower_away = lower_receding(j);
-    const double slack_upper = envelope(j, to_upper, upper_away).speed - v[j];
-    const double slack_lower = envelope(j, to_lower, lower_away).speed + v[j];
     if (options_.measure == Measure::predicted) {
+      const Envelope upper = envelope(j, to_upper, upper_away);
+      const Envelope lower = envelope(j, to_lower, lower_away);
+      const double slack_upper = upper.speed - v[j];
+      const double slack_lower = lower.speed + v[j];
       side_[j] = slack_upper <= slack_lower ? 1.0 : -1.0;
       activation_[j] = ramp(options_.ramp, 1.0 - std::min(slack_upper, slack_lower) / reserve);
-      target_[j] = side_[j] > 0.0 ? allowed_acceleration(j, to_upper, upper_away, v[j], reserve)
-                                  : -allowed_acceleration(j, to_lower, lower_away, -v[j], reserve);
+      target_[j] = side_[j] > 0.0 ? allowed_acceleration(upper, upper_away, v[j], reserve)
+                                  : -allowed_acceleration(lower, lower_away, -v[j], reserve);
     } else {
       const double distance = std::min(to_upper, to_lower);
       side_[j] = to_upper <= to_lower ? 1.0 : -1.0;
@@ -176,10 +172,12 @@ void JointLimits::update_second_order(const VectorArg& q, const VectorArg& v) {
       target_[j] =
           std::isfinite(distance) ? side_[j] * servo * (distance - buffer_[j]) - damping * relative : 0.0;
     }
-    motion_upper_[j] = allowed_acceleration(j, to_upper - options_.margin, upper_away, v[j], 0.0);
-    motion_lower_[j] = -allowed_acceleration(j, to_lower - options_.margin, lower_away, -v[j], 0.0);
-    upper_at_rest_[j] = bound_at_rest(j, to_upper, upper_away);
-    lower_at_rest_[j] = bound_at_rest(j, to_lower, lower_away);
+    const Envelope ahead = envelope(j, to_upper - options_.margin, upper_away);
+    const Envelope behind = envelope(j, to_lower - options_.margin, lower_away);
+    motion_upper_[j] = allowed_acceleration(ahead, upper_away, v[j], 0.0);
+    motion_lower_[j] = -allowed_acceleration(behind, lower_away, -v[j], 0.0);
+    upper_at_rest_[j] = options_.servo_gain * std::max(0.0, ahead.speed);
+    lower_at_rest_[j] = options_.servo_gain * std::max(0.0, behind.speed);
     note_distances(j, to_upper, to_lower);
   }
   engagement_slack_ = options_.servo_gain * gain_.cwiseProduct(buffer_);

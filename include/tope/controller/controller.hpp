@@ -114,7 +114,7 @@ class Controller {
   Unilateral::Options unilateral_options() const;
   LawOptions law_options() const;
   void choose_headroom();
-  double widest_factor() const;
+  double headroom_factor(double place) const;
   void rebuild();
   bool valid(const VectorArg& q, const VectorArg& v, double t, const Eigen::Ref<Vector>& u) const;
   bool torque_mode() const { return options_.mode == Mode::torque; }

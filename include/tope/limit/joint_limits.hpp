@@ -120,9 +120,8 @@ class JointLimits {
     double slope;
   };
   Envelope envelope(int joint, double distance, double receding) const;
-  /// Acceleration allowed towards a limit at `distance` and approach speed `speed`, `slack` below the envelope.
-  double allowed_acceleration(int joint, double distance, double receding, double speed, double slack) const;
-  double bound_at_rest(int joint, double distance, double receding) const;
+  /// Acceleration allowed towards a limit at approach speed `speed`, `slack` below the envelope.
+  double allowed_acceleration(const Envelope& allowed, double receding, double speed, double slack) const;
   /// How fast the limit on a side moves away from the joint.
   double upper_receding(int joint) const { return upper_rate_[joint]; }
   double lower_receding(int joint) const { return -lower_rate_[joint]; }
