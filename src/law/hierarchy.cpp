@@ -21,8 +21,10 @@ Hierarchy::Hierarchy(const Stack& stack, const Options& options)
       spectrum_(stack.size()),
       held_(static_cast<std::size_t>(stack.size()), 0),
       held_target_(stack.size()),
+      held_rows_(stack.size(), 1),
       held_open_(stack.size()),
       held_y_(Vector::Zero(PanelMatrix::padded(stack.size()))),
+      closed_(stack.size(), workspace_rows(stack)),
       open_(stack.size()),
       motion_(stack.size(), stack.size()),
       limit_row_(1, stack.size()),
@@ -53,6 +55,7 @@ Hierarchy::Hierarchy(const Stack& stack, const Options& options)
     level.first = first;
     level.last = last;
     first = last;
+    ends_by_basis_ = ends_by_basis_ || (rows >= stack.size() && !stack.motion_is_y);
   }
 }
 
@@ -72,7 +75,8 @@ void Hierarchy::solve(const Stack& stack, const Selection& selection, const Vect
   solution.set_zero();
   solution.laws = 1;
   hold_limits(stack, selection, limit_target);
-  open_.reset(held_open_);
+  by_basis_ = ends_by_basis_;
+  by_basis_ ? open_.reset(held_open_) : closed_.reset(held_rows_);
   y_ = held_y_;
   solution.y_limits = held_y_.head(stack.size());
   for (Level& level : levels_) {
@@ -113,6 +117,7 @@ void Hierarchy::hold_limits(const Stack& stack, const Selection& selection, cons
 
 void Hierarchy::release_limits() {
   std::fill(held_.begin(), held_.end(), 0);
+  held_rows_.reset();
   held_open_.reset();
   held_y_.setZero();
 }
@@ -122,16 +127,18 @@ void Hierarchy::hold_limit(const Stack& stack, Eigen::Index joint, double target
   held_[static_cast<std::size_t>(joint)] = 1;
   held_target_[joint] = target;
   limit_row_.set_rows(0, stack.motion.row(joint));
-  const PanelMatrix& row = held_open_.project(limit_row_, task_);
-  double squared = 0.0;
-  for (Eigen::Index j = 0; j < row.cols(); ++j) {
-    step_[j] = row(0, j);
-    squared += row(0, j) * row(0, j);
-  }
+  held_rows_.project(limit_row_, task_);
+  multiply_rows(task_, gram_);
+  const double norm = std::sqrt(gram_(0, 0));
+  scale(task_, 1.0 / norm);
   const double missing = target - stack.motion.row(joint).dot(held_y_.head(stack.size()));
-  step_.head(row.cols()) *= missing / squared;
-  add_product(held_open_.columns(), step_.data(), held_y_.data());
-  held_open_.close(row);
+  for (Eigen::Index i = 0; i < stack.size(); ++i) {
+    held_y_[i] += missing / norm * task_(0, i);
+  }
+  held_rows_.close(task_);
+  if (ends_by_basis_) {
+    held_open_.close(held_open_.project(task_, gram_));
+  }
 }
 
 /// The selected tasks of a level and their metric B.
@@ -160,13 +167,13 @@ void Hierarchy::add_level(const Stack& stack, Level& level, bool last, Solution&
   const int m = level.given.rows();
   // a level that asks for all the freedom there is always loses some to the levels above it
   const bool partial = m < stack.size();
-  const bool crowded = open_.size() < m;
+  const int open = by_basis_ ? open_.size() : closed_.open();
+  const bool crowded = open < m;
   solution.singular = solution.singular || (partial && crowded);
-  if (open_.size() == 0) {
+  if (open == 0) {
     return;
   }
   const bool plain = level.given.is_motion() && stack.motion_is_y;
-  const PanelMatrix& task = plain ? open_.columns() : open_.project(rows(level), task_);
   const Eigen::Index padded = PanelMatrix::padded(m);
   residual_.head(padded) = level.given.b().head(padded);
   if (plain) {
@@ -174,38 +181,94 @@ void Hierarchy::add_level(const Stack& stack, Level& level, bool last, Solution&
   } else {
     subtract_product(rows(level), y_.data(), residual_.data());
   }
-  const double rho = 1.0 / (1.0 + options_.epsilon * options_.epsilon);  // of all directions, if plain:
-  if (plain && open_.orthonormal() && rho > options_.damped_below) {
-    multiply_transposed(task, residual_.data(), step_.data());
-    add_product(task, step_.data(), y_.data());
-    open_.close_all();
+  if (!by_basis_ && plain && plain_is_undamped() && (last || !closed_.shared())) {
+    add_rest();
     return;
   }
-  if (!crowded && !plain && add_undamped(task, level, last)) {
-    return;
+  // the spectrum of few rows costs little even if some of them have no direction left
+  const bool by_rows = partial && (!crowded || m <= PanelMatrix::height);
+  if (!by_basis_ && (closed_.shared() || !by_rows)) {
+    use_basis();
   }
-  if (&task != &task_) {
-    task_.assign(task);
+  project(plain, level);
+  if (partial && !crowded && add_undamped(level, last)) {
+    return;
   }
   whiten(plain, level);
   const bool clear = add_whitened(last);
   solution.singular = solution.singular || (partial && !clear);
 }
 
+/// A task on y itself, to which each direction is left whole or by its own share.
+void Hierarchy::add_rest() {
+  const double metric = 1.0 + options_.epsilon * options_.epsilon;
+  multiply(closed_.rows(), residual_.data(), step_.data());
+  for (int i = 0; i < closed_.size(); ++i) {
+    const double left = 1.0 - closed_.share(i);
+    const double rho = left * left / metric;
+    step_[i] *= 1.0 - rho / damped(rho);
+  }
+  y_ += residual_.head(y_.size());
+  subtract_transposed_product(closed_.rows(), step_.data(), y_.data());
+  closed_.close_all();
+}
+
+bool Hierarchy::plain_is_undamped() const {
+  return 1.0 / (1.0 + options_.epsilon * options_.epsilon) > options_.damped_below;
+}
+
+/// What follows needs a basis of what is open.
+void Hierarchy::use_basis() {
+  open_.reset(closed_);
+  by_basis_ = true;
+}
+
+/// A task in the directions that are open, A N or A Z.
+void Hierarchy::project(bool plain, const Level& level) {
+  if (!by_basis_) {
+    closed_.project(rows(level), task_);
+    return;
+  }
+  const PanelMatrix& task = plain ? open_.columns() : open_.project(rows(level), task_);
+  if (&task != &task_) {
+    task_.assign(task);
+  }
+}
+
+/// y <- y + N^(1/2) step
+void Hierarchy::move() {
+  if (by_basis_) {
+    add_product(open_.columns(), step_.data(), y_.data());
+  } else {
+    y_.head(task_.cols()) += step_.head(task_.cols());
+  }
+}
+
 /// The undamped law, in which no metric matters. False, and nothing is done, unless every rho > rho_0.
-bool Hierarchy::add_undamped(const PanelMatrix& task, const Level& level, bool last) {
-  multiply_rows(task, gram_);
+bool Hierarchy::add_undamped(const Level& level, bool last) {
+  multiply_rows(task_, gram_);
   subtract(gram_, options_.damped_below, level.metric, excess_);
   if (!clear_.factorise(excess_) || !factor_.factorise(gram_)) {
     return false;
   }
-  factor_.solve(residual_.data());
-  multiply_transposed(task, residual_.data(), step_.data());
-  add_product(open_.columns(), step_.data(), y_.data());
+  if (by_basis_) {
+    factor_.solve(residual_.data());
+  } else {
+    factor_.whiten(residual_.data());
+    factor_.whiten(task_);  // its rows are orthonormal then
+  }
+  multiply_transposed(task_, residual_.data(), step_.data());
+  move();
   if (!last) {
-    open_.close(task);
+    by_basis_ ? open_.close(task_) : closed_.close(task_);
   }
   return true;
+}
+
+/// 1 / g(rho)
+double Hierarchy::damped(double rho) const {
+  const double deficit = std::max(0.0, 1.0 - rho / options_.damped_below);
+  return rho + options_.damped_below * deficit * deficit;
 }
 
 /// Turns A Z and what is missing into the metric B^-1; B = (1 + eps^2) I if `plain`.
@@ -230,11 +293,11 @@ bool Hierarchy::add_whitened(bool last) {
   by_rows ? multiply_rows(task_, gram_) : multiply_columns(task_, gram_);
   const bool clear = !by_rows && clear_.factorise(gram_, -options_.damped_below);
   clear ? minimise() : minimise_damped();
-  add_product(open_.columns(), step_.data(), y_.data());
+  move();
   if (!last && clear) {
     open_.close_all();
   } else if (!last) {
-    open_.close(spectrum_, shares_);
+    by_basis_ ? open_.close(spectrum_, shares_) : closed_.close(spectrum_, shares_);
   }
   return clear;
 }
@@ -255,9 +318,7 @@ void Hierarchy::minimise_damped() {
   step.setZero();
   for (int i = 0; i < spectrum_.size(); ++i) {
     const double rho = spectrum_.squared(i);
-    const double deficit = std::max(0.0, 1.0 - rho / options_.damped_below);
-    const double damped = rho + options_.damped_below * deficit * deficit;  // 1 / g(rho)
-    step += weights_[i] / damped * Eigen::Map<const Vector>(spectrum_.direction(i), task_.cols());
+    step += weights_[i] / damped(rho) * Eigen::Map<const Vector>(spectrum_.direction(i), task_.cols());
     shares_[i] = 1.0 - std::sqrt(1.0 - smooth_step(rho / options_.locked_above));
   }
 }

@@ -12,22 +12,48 @@ OpenBasis::OpenBasis(int n, int image_rows)
       reflectors_(Matrix::Zero(PanelMatrix::padded(n), n)),
       along_(Matrix::Zero(PanelMatrix::padded(image_rows), n)),
       triangle_(n, n),
-      shares_(n) {
+      shares_(n),
+      row_(Vector::Zero(PanelMatrix::padded(n))) {
   reset();
 }
 
 void OpenBasis::reset() {
   whole_ = true;
-  orthonormal_ = true;
   with_image_ = false;
   open_.set_identity(triangle_.rows());
 }
 
 void OpenBasis::reset(const OpenBasis& other) {
   whole_ = other.whole_;
-  orthonormal_ = other.orthonormal_;
   with_image_ = false;
   open_.assign(other.open_);
+}
+
+void OpenBasis::reset(const ClosedRows& closed) {
+  reset();
+  rows_.resize(0, size());
+  for (int i = 0; i < closed.size(); ++i) {
+    if (closed.share(i) >= 1.0) {
+      rows_.append_row(row_of(closed.rows(), i));
+    }
+  }
+  if (rows_.rows() > 0) {
+    close_rows();
+  }
+  for (int i = 0; i < closed.size(); ++i) {
+    if (closed.share(i) < 1.0) {
+      multiply_transposed(open_, row_of(closed.rows(), i), shares_.data());
+      turn_all(shares_.data(), closed.share(i));
+    }
+  }
+}
+
+/// A row as numbers one after the other, until the next call.
+const double* OpenBasis::row_of(const PanelMatrix& m, Eigen::Index row) {
+  for (Eigen::Index j = 0; j < m.cols(); ++j) {
+    row_[j] = m(row, j);
+  }
+  return row_.data();
 }
 
 void OpenBasis::reset(const Matrix& t) {
@@ -122,7 +148,6 @@ void OpenBasis::close(const RowSpectrum& spectrum, const Vector& shares) {
       rows_.append_row(spectrum.direction(i));
     } else if (shares[i] > nothing) {
       turn_all(spectrum.direction(i), shares[i] / spectrum.squared(i));
-      orthonormal_ = false;
     }
   }
   close_rows();  // v_i are orthogonal: the shares taken before leave these as they are

@@ -21,6 +21,61 @@ Column product(const double* panel, Eigen::Index cols, const double* x) {
   return even + odd;
 }
 
+/// One panel times the first columns of another's transpose.
+std::array<Column, height> product_by_transposed(const double* left, const double* right, Eigen::Index cols) {
+  Column first = Column::Zero();
+  Column second = Column::Zero();
+  Column third = Column::Zero();
+  Column fourth = Column::Zero();
+  for (Eigen::Index j = 0; j < cols; ++j) {
+    const Column now = column(left, j);
+    first += right[height * j] * now;
+    second += right[height * j + 1] * now;
+    third += right[height * j + 2] * now;
+    fourth += right[height * j + 3] * now;
+  }
+  return {first, second, third, fourth};
+}
+
+/// out (cols) += sign times the panels of M from `first` on, transposed, times w.
+void add_transposed_panels(const PanelMatrix& m, Eigen::Index first, double sign, const double* w,
+                           double* out) {
+  const Eigen::Index panels = m.panels();
+  const Eigen::Index cols = m.cols();
+  for (Eigen::Index p = first; p < panels; ++p) {
+    const double* panel = m.panel(p);
+    const Column weights = sign * column(w, p);
+    for (Eigen::Index j = 0; j < cols; ++j) {
+      out[j] += column(panel, j).dot(weights);
+    }
+  }
+}
+
+/// Writes block q of a panel that has `cols` columns.
+void store(const std::array<Column, height>& block, Eigen::Index q, double* panel, Eigen::Index cols) {
+  const Eigen::Index count = std::min(height, cols - height * q);
+  for (Eigen::Index j = 0; j < count; ++j) {
+    column(panel, height * q + j) = block[static_cast<std::size_t>(j)];
+  }
+}
+
+/// Columns of a panel += `sign` times a panel of A times B.
+template <int sign>
+void add_product(const PanelMatrix& a, Eigen::Index panel, const PanelMatrix& b, double* result) {
+  const double* left = a.panel(panel);
+  for (Eigen::Index k = 0; k < a.cols(); k += height) {
+    const double* right = b.panel(k / height);
+    const Eigen::Index depth = std::min(height, a.cols() - k);
+    for (Eigen::Index j = 0; j < b.cols(); ++j) {
+      Column sum = column(result, j);
+      for (Eigen::Index i = 0; i < depth; ++i) {
+        sum += sign * right[height * j + i] * column(left, k + i);
+      }
+      column(result, j) = sum;
+    }
+  }
+}
+
 }  // namespace
 
 void multiply(const PanelMatrix& m, const double* x, double* out) {
@@ -45,67 +100,55 @@ void subtract_product(const PanelMatrix& m, const double* x, double* out) {
 }
 
 void multiply_transposed(const PanelMatrix& m, const double* w, double* out) {
-  const Eigen::Index panels = m.panels();
-  const Eigen::Index cols = m.cols();
-  if (panels == 0) {
-    std::fill(out, out + cols, 0.0);
+  if (m.panels() == 0) {
+    std::fill(out, out + m.cols(), 0.0);
     return;
   }
-  for (Eigen::Index p = 0; p < panels; ++p) {
-    const double* panel = m.panel(p);
-    const Column weights = column(w, p);
-    for (Eigen::Index j = 0; j < cols; ++j) {
-      const double sum = column(panel, j).dot(weights);
-      out[j] = p == 0 ? sum : out[j] + sum;
-    }
+  const double* panel = m.panel(0);
+  const Column weights = column(w, 0);
+  for (Eigen::Index j = 0; j < m.cols(); ++j) {
+    out[j] = column(panel, j).dot(weights);
   }
+  add_transposed_panels(m, 1, 1.0, w, out);
+}
+
+void add_transposed_product(const PanelMatrix& m, const double* w, double* out) {
+  add_transposed_panels(m, 0, 1.0, w, out);
+}
+
+void subtract_transposed_product(const PanelMatrix& m, const double* w, double* out) {
+  add_transposed_panels(m, 0, -1.0, w, out);
 }
 
 void multiply(const PanelMatrix& a, const PanelMatrix& b, PanelMatrix& out) {
   out.resize(a.rows(), b.cols());
-  const Eigen::Index inner = a.cols();
-  const Eigen::Index cols = b.cols();
   for (Eigen::Index p = 0; p < a.panels(); ++p) {
-    const double* left = a.panel(p);
-    double* result = out.panel(p);
-    for (Eigen::Index k = 0; k < inner; k += height) {
-      const double* right = b.panel(k / height);
-      const Eigen::Index depth = std::min(height, inner - k);
-      for (Eigen::Index j = 0; j < cols; ++j) {
-        Column sum = k == 0 ? Column::Zero().eval() : column(result, j).eval();
-        for (Eigen::Index i = 0; i < depth; ++i) {
-          sum += right[height * j + i] * column(left, k + i);
-        }
-        column(result, j) = sum;
-      }
+    Eigen::Map<Vector>(out.panel(p), height * b.cols()).setZero();
+    add_product<1>(a, p, b, out.panel(p));
+  }
+}
+
+void subtract_product(const PanelMatrix& a, const PanelMatrix& b, const PanelMatrix& c, PanelMatrix& out) {
+  out.assign(a);
+  for (Eigen::Index p = 0; p < a.panels(); ++p) {
+    add_product<-1>(b, p, c, out.panel(p));
+  }
+}
+
+void multiply_by_transposed(const PanelMatrix& a, const PanelMatrix& b, PanelMatrix& out) {
+  out.resize(a.rows(), b.rows());
+  for (Eigen::Index p = 0; p < a.panels(); ++p) {
+    for (Eigen::Index q = 0; q < b.panels(); ++q) {
+      store(product_by_transposed(a.panel(p), b.panel(q), a.cols()), q, out.panel(p), b.rows());
     }
   }
 }
 
 void multiply_rows(const PanelMatrix& m, PanelMatrix& out) {
   out.resize(m.rows(), m.rows());
-  const Eigen::Index cols = m.cols();
   for (Eigen::Index p = 0; p < m.panels(); ++p) {
-    double* result = out.panel(p);
-    const double* left = m.panel(p);
     for (Eigen::Index q = 0; q <= p; ++q) {
-      const double* right = m.panel(q);
-      Column first = Column::Zero();
-      Column second = Column::Zero();
-      Column third = Column::Zero();
-      Column fourth = Column::Zero();
-      for (Eigen::Index j = 0; j < cols; ++j) {
-        const Column now = column(left, j);
-        first += right[height * j] * now;
-        second += right[height * j + 1] * now;
-        third += right[height * j + 2] * now;
-        fourth += right[height * j + 3] * now;
-      }
-      const std::array<Column, height> sums{first, second, third, fourth};
-      const Eigen::Index count = std::min(height, m.rows() - height * q);
-      for (Eigen::Index j = 0; j < count; ++j) {
-        column(result, height * q + j) = sums[static_cast<std::size_t>(j)];
-      }
+      store(product_by_transposed(m.panel(p), m.panel(q), m.cols()), q, out.panel(p), m.rows());
     }
   }
 }

@@ -64,12 +64,23 @@ void check(Random& random, int rows, int cols) {
   Vector across(cols);
   multiply_transposed(panels, padded(w).data(), across.data());
   BOOST_TEST((across - m.transpose() * w).norm() <= close * (1.0 + w.norm()));
+  across = x;
+  add_transposed_product(panels, padded(w).data(), across.data());
+  BOOST_TEST((across - x - m.transpose() * w).norm() <= close * (1.0 + w.norm()));
+  across = x;
+  subtract_transposed_product(panels, padded(w).data(), across.data());
+  BOOST_TEST((across - x + m.transpose() * w).norm() <= close * (1.0 + w.norm()));
 
   const int others = random.integer(1, 13);
   const Matrix b = random.matrix(cols, others);
   PanelMatrix product(rows + 2, others + 1);
   multiply(panels, used(random, b), product);
   BOOST_TEST((dense(product) - m * b).norm() <= close * (1.0 + b.norm()));
+  multiply_by_transposed(panels, used(random, b.transpose()), product);
+  BOOST_TEST((dense(product) - m * b).norm() <= close * (1.0 + b.norm()));
+  const Matrix c = random.matrix(rows, others);
+  subtract_product(used(random, c), panels, used(random, b), product);
+  BOOST_TEST((dense(product) - c + m * b).norm() <= close * (1.0 + b.norm()));
 
   PanelMatrix gram(rows + cols, rows + cols);
   multiply_rows(panels, gram);
@@ -129,6 +140,23 @@ BOOST_AUTO_TEST_CASE(rows_can_be_added_one_by_one) {
   Vector out(8);
   multiply(panels, Vector::Ones(5).eval().data(), out.data());
   check_rest_is_zero(out, 6);
+}
+
+BOOST_AUTO_TEST_CASE(rows_of_another_matrix_can_be_added) {
+  for (int first = 0; first <= 9; ++first) {
+    for (int second = 0; second <= 5; ++second) {
+      BOOST_TEST_CONTEXT("seed 10 * " << first << " + " << second) {
+        Random random(10 * first + second);
+        const Matrix m = random.matrix(first + second, 5);
+        PanelMatrix panels = used(random, m.topRows(first));
+        panels.append_rows(used(random, m.bottomRows(second)));
+        BOOST_TEST((dense(panels) - m).norm() == 0.0);
+        Vector out = Vector::Ones(PanelMatrix::padded(first + second));
+        multiply(panels, Vector::Ones(5).eval().data(), out.data());
+        check_rest_is_zero(out, first + second);
+      }
+    }
+  }
 }
 
 BOOST_AUTO_TEST_CASE(nothing_times_nothing_is_zero) {

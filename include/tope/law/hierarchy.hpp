@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tope/law/cholesky.hpp>
+#include <tope/law/closed_rows.hpp>
 #include <tope/law/level_rows.hpp>
 #include <tope/law/open_basis.hpp>
 #include <tope/law/stack_law.hpp>
@@ -17,8 +18,9 @@ namespace tope {
 ///   N <- N - sum s(rho) / rho (N A^T L^-T v)(...)^T,    s a smooth step from 0 to 1 on [0, rho_lock]
 /// rho in [0, 1) says how much of a task direction is left, whether the arm or a higher level took it. Where
 /// every rho >= rho_0 this is the undamped law; where rows conflict or are deficient it is least squares in
-/// the metric B^-1. N is kept as Z Z^T: a level has as many unknowns as directions are open, and its spectrum is taken
-/// from the smaller of G and Z^T A^T L^-T L^-1 A Z. What does not depend on the selection is worked out once a cycle, and
+/// the metric B^-1. N is kept by rows Q that are closed, to which each level adds its own; below a level that takes directions by
+/// shares, as Z Z^T: a level then has as many unknowns as directions are open, and its spectrum is taken from the smaller of G and
+/// Z^T A^T L^-T L^-1 A Z. What does not depend on the selection is worked out once a cycle, and
 /// where a selection only adds limit rows to the one before, those rows alone are added.
 class Hierarchy final : public StackLaw {
  public:
@@ -56,11 +58,17 @@ class Hierarchy final : public StackLaw {
   void prepare(const Stack& stack, const Selection& selection, Level& level);
   const PanelMatrix& rows(const Level& level) const;
   void add_level(const Stack& stack, Level& level, bool last, Solution& solution);
-  bool add_undamped(const PanelMatrix& task, const Level& level, bool last);
+  void add_rest();
+  bool plain_is_undamped() const;
+  void use_basis();
+  void project(bool plain, const Level& level);
+  void move();
+  bool add_undamped(const Level& level, bool last);
   void whiten(bool plain, Level& level);
   bool add_whitened(bool last);
   void minimise();
   void minimise_damped();
+  double damped(double rho) const;
 
   Options options_;
   std::vector<Level> levels_;
@@ -69,15 +77,19 @@ class Hierarchy final : public StackLaw {
 
   std::vector<char> held_;  // joints whose limit row is in:
   Vector held_target_;
-  OpenBasis held_open_;  // Z
-  Vector held_y_;        // and y, of these rows alone
+  ClosedRows held_rows_;  // Q
+  OpenBasis held_open_;   // its twin, where levels begin with that,
+  Vector held_y_;         // and y, of these rows alone
 
-  OpenBasis open_;      // Z (n x d)
-  PanelMatrix motion_;  // T, for a task that asks for it
+  ClosedRows closed_;  // Q (k x n), until a level below one that takes by shares; from there on
+  OpenBasis open_;     // Z (n x d)
+  bool by_basis_ = false;
+  bool ends_by_basis_ = false;  // some level asks for all freedom and not for y itself: Z from the start
+  PanelMatrix motion_;          // T, for a task that asks for it
   PanelMatrix limit_row_;
-  PanelMatrix task_;    // A Z, or L^-1 A Z (m x d)
-  PanelMatrix gram_;    // A Z Z^T A^T, or G or its small twin
-  PanelMatrix excess_;  // A Z Z^T A^T - rho_0 B
+  PanelMatrix task_;    // A N (m x n) or A Z (m x d), or that times L^-1
+  PanelMatrix gram_;    // A N A^T, or G or its small twin
+  PanelMatrix excess_;  // A N A^T - rho_0 B
   Cholesky factor_;
   Cholesky clear_;   // of what is positive definite when every rho > rho_0
   Vector y_;         // (n), padded like all that panels are multiplied with

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tope/law/closed_rows.hpp>
 #include <tope/law/row_spectrum.hpp>
 
 namespace tope {
@@ -17,6 +18,8 @@ class OpenBasis {
   void reset();
   /// The same directions as another basis that has no image.
   void reset(const OpenBasis& other);
+  /// What is left of rows that are taken, Z Z^T = N. It has no image.
+  void reset(const ClosedRows& closed);
   /// All directions, with the image T Z, for T (up to image_rows x n).
   void reset(const Matrix& t);
 
@@ -31,8 +34,6 @@ class OpenBasis {
   void close(const PanelMatrix& b);
   /// Takes each direction of the spectrum out by a share between 0 and 1: Z <- Z (I - sum share_i v_i v_i^T).
   void close(const RowSpectrum& spectrum, const Vector& shares);
-  /// True when Z^T Z = I: no direction has been taken out by a share.
-  bool orthonormal() const { return orthonormal_; }
   /// No direction is open.
   void close_all();
 
@@ -41,17 +42,18 @@ class OpenBasis {
   void reflect_rows();
   void take_out(PanelMatrix& m, bool identity);
   void turn_all(const double* v, double factor);
+  const double* row_of(const PanelMatrix& m, Eigen::Index row);
 
   PanelMatrix open_;
   PanelMatrix image_;
   bool with_image_ = false;
   bool whole_ = true;  // Z is the identity
-  bool orthonormal_ = true;
   PanelMatrix rows_;   // what is to be taken out whole (m x d)
   Matrix reflectors_;  // V (d x m)
   Matrix along_;       // M V (rows of M x m), padded
   Matrix triangle_;    // T (m x m)
   Vector shares_;
+  Vector row_;  // (n), padded
 };
 
 }  // namespace tope

@@ -87,6 +87,21 @@ class PanelMatrix {
     }
   }
 
+  /// Adds the rows of another matrix (any x cols) at the end.
+  void append_rows(const PanelMatrix& other) {
+    for (Eigen::Index i = 0; i < other.rows_; ++i, ++rows_) {
+      const double* from = other.panel(i / height) + i % height;
+      double* to = panel(rows_ / height);
+      if (rows_ % height == 0) {
+        Eigen::Map<Vector>(to, height * cols_).setZero();
+      }
+      to += rows_ % height;
+      for (Eigen::Index j = 0; j < height * cols_; j += height) {
+        to[j] = from[j];
+      }
+    }
+  }
+
   double& operator()(Eigen::Index i, Eigen::Index j) { return values_[index(i, j)]; }
   double operator()(Eigen::Index i, Eigen::Index j) const { return values_[index(i, j)]; }
   /// The first of a panel's columns, the others follow. Loops take this once: the compiler cannot know that what they
@@ -131,8 +146,16 @@ void add_product(const PanelMatrix& m, const double* x, double* out);
 void subtract_product(const PanelMatrix& m, const double* x, double* out);
 /// out (cols) = M^T w (rows).
 void multiply_transposed(const PanelMatrix& m, const double* w, double* out);
+/// out (cols) += M^T w (rows).
+void add_transposed_product(const PanelMatrix& m, const double* w, double* out);
+/// out (cols) -= M^T w (rows).
+void subtract_transposed_product(const PanelMatrix& m, const double* w, double* out);
 /// out = A B.
 void multiply(const PanelMatrix& a, const PanelMatrix& b, PanelMatrix& out);
+/// out = A B^T.
+void multiply_by_transposed(const PanelMatrix& a, const PanelMatrix& b, PanelMatrix& out);
+/// out = A - B C.
+void subtract_product(const PanelMatrix& a, const PanelMatrix& b, const PanelMatrix& c, PanelMatrix& out);
 /// The lower triangle of M M^T.
 void multiply_rows(const PanelMatrix& m, PanelMatrix& out);
 /// The lower triangle of M^T M.

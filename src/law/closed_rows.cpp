@@ -1,0 +1,54 @@
+#include <tope/law/closed_rows.hpp>
+
+#include <cmath>
+
+namespace tope {
+
+ClosedRows::ClosedRows(int n, int max_rows)
+    : rows_(n, n), shares_(Vector::Zero(n)), along_(max_rows, n), direction_(n) {
+  reset();
+}
+
+void ClosedRows::reset() {
+  rows_.resize(0, rows_.cols());
+  whole_ = 0;
+}
+
+void ClosedRows::reset(const ClosedRows& other) {
+  rows_.assign(other.rows_);
+  shares_ = other.shares_;
+  whole_ = other.whole_;
+}
+
+void ClosedRows::project(const PanelMatrix& a, PanelMatrix& out) {
+  multiply_by_transposed(a, rows_, along_);
+  subtract_product(a, along_, rows_, out);
+}
+
+void ClosedRows::close(const PanelMatrix& rows) {
+  shares_.segment(size(), rows.rows()).setOnes();
+  rows_.append_rows(rows);
+  whole_ += static_cast<int>(rows.rows());
+}
+
+void ClosedRows::close(const RowSpectrum& spectrum, const Vector& shares) {
+  constexpr double nothing = 1e-16;
+  for (int i = 0; i < spectrum.size(); ++i) {
+    if (shares[i] > nothing) {
+      const double scale = 1.0 / std::sqrt(spectrum.squared(i));
+      for (Eigen::Index j = 0; j < rows_.cols(); ++j) {
+        direction_[j] = scale * spectrum.direction(i)[j];
+      }
+      shares_[size()] = shares[i];
+      rows_.append_row(direction_.data());
+      whole_ += shares[i] >= 1.0 ? 1 : 0;
+    }
+  }
+}
+
+void ClosedRows::close_all() {
+  whole_ = static_cast<int>(rows_.cols());
+  rows_.resize(rows_.cols(), rows_.cols());
+}
+
+}  // namespace tope

@@ -1,0 +1,119 @@
+// ClosedRows against dense projectors, A N while rows are added; shares, and the basis of what they leave.
+#include "support/random.hpp"
+
+#include <tope/law/cholesky.hpp>
+#include <tope/law/closed_rows.hpp>
+#include <tope/law/open_basis.hpp>
+
+#include <Eigen/QR>
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+
+namespace tope::test {
+namespace {
+
+Matrix dense(const PanelMatrix& m) {
+  Matrix result(m.rows(), m.cols());
+  m.copy_to(result);
+  return result;
+}
+
+/// I - A^+ A.
+Matrix null_space(const Matrix& a) {
+  return Matrix::Identity(a.cols(), a.cols()) - a.completeOrthogonalDecomposition().pseudoInverse() * a;
+}
+
+/// What a level does: its rows, projected and made orthonormal, are taken.
+void take(ClosedRows& closed, const Matrix& rows) {
+  PanelMatrix projected(rows.rows(), rows.cols());
+  closed.project(PanelMatrix(rows), projected);
+  PanelMatrix gram(rows.rows(), rows.rows());
+  multiply_rows(projected, gram);
+  Cholesky factor(rows.rows());
+  BOOST_REQUIRE(factor.factorise(gram));
+  factor.whiten(projected);
+  closed.close(projected);
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(closed_rows)
+
+BOOST_AUTO_TEST_CASE(project_like_dense_null_spaces) {
+  for (int seed = 0; seed < 100; ++seed) {
+    BOOST_TEST_CONTEXT("seed " << seed) {
+      Random random(seed);
+      const int n = random.integer(7, 20);
+      ClosedRows closed(n, 5);
+      Matrix taken(0, n);
+      const Matrix probe = random.matrix(5, n);
+      for (int level = 0; level < 3; ++level) {
+        PanelMatrix projected(5, n);
+        closed.project(PanelMatrix(probe), projected);
+        BOOST_TEST((dense(projected) - probe * null_space(taken)).norm() <= 1e-11);
+        BOOST_TEST(closed.size() == taken.rows());
+        BOOST_TEST(closed.open() == n - taken.rows());
+        const Matrix rows = random.matrix(random.integer(1, 2), n);
+        take(closed, rows);
+        Matrix more(taken.rows() + rows.rows(), n);
+        more << taken, rows;
+        taken = more;
+      }
+      const Matrix q = dense(closed.rows());
+      BOOST_TEST((q * q.transpose() - Matrix::Identity(q.rows(), q.rows())).norm() <= 1e-11);
+
+      ClosedRows copy(n, 5);
+      copy.reset(closed);
+      BOOST_TEST((dense(copy.rows()) - q).norm() == 0.0);
+      closed.close_all();
+      BOOST_TEST(closed.open() == 0);
+      closed.reset();
+      BOOST_TEST(closed.open() == n);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(take_shares_and_leave_a_basis) {
+  for (int seed = 0; seed < 100; ++seed) {
+    BOOST_TEST_CONTEXT("seed " << seed) {
+      Random random(seed);
+      const int n = random.integer(7, 20);
+      ClosedRows closed(n, 3);
+      const Matrix first = random.matrix(random.integer(1, 3), n);
+      take(closed, first);
+      PanelMatrix projected(3, n);
+      closed.project(PanelMatrix(random.matrix(3, n)), projected);
+      PanelMatrix gram(3, 3);
+      multiply_rows(projected, gram);
+      RowSpectrum spectrum(n);
+      spectrum.compute(projected, gram);
+      const Vector shares = (Vector(3) << random.uniform(0.0, 1.0), 1.0, 0.0).finished();
+      closed.close(spectrum, shares);
+      BOOST_TEST(closed.size() == first.rows() + 2);  // nothing is taken of the third
+      BOOST_TEST(closed.open() == n - first.rows() - 1);
+      BOOST_TEST(closed.shared());
+
+      Matrix half = null_space(first);  // N = half half^T
+      for (int i = 0; i < 2; ++i) {
+        const Vector u = Eigen::Map<const Vector>(spectrum.direction(i), n) / std::sqrt(spectrum.squared(i));
+        half -= shares[i] * u * u.transpose();
+      }
+      const Matrix q = dense(closed.rows());
+      Matrix by_rows = Matrix::Identity(n, n);
+      for (int i = 0; i < closed.size(); ++i) {
+        by_rows -= closed.share(i) * q.row(i).transpose() * q.row(i);
+      }
+      BOOST_TEST((by_rows - half).norm() <= 1e-11);
+      OpenBasis open(n);
+      open.reset(closed);
+      BOOST_TEST(open.size() == closed.open());
+      const Matrix z = dense(open.columns());
+      BOOST_TEST((z * z.transpose() - half * half.transpose()).norm() <= 1e-11);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+}  // namespace tope::test
