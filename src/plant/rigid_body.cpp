@@ -12,6 +12,8 @@
 #include <deque>
 #include <random>
 
+// Pinocchio's algorithms are compiled already for arguments of type VectorArg; for others this file compiles for long.
+
 namespace tope {
 namespace {
 
@@ -58,7 +60,8 @@ struct RigidBody::Scratch {
       applied -= model.damping.cwiseProduct(speed);
       applied -= model.upperDryFrictionLimit.cwiseProduct((speed / kStiction).array().tanh().matrix());
     }
-    return pinocchio::aba(model, data, position, speed, applied, pinocchio::Convention::WORLD);
+    return pinocchio::aba(model, data, VectorArg(position), VectorArg(speed), VectorArg(applied),
+                          pinocchio::Convention::WORLD);
   }
 
   void semi_implicit(const Vector& torque, double h) {
@@ -113,7 +116,7 @@ void RigidBody::reset(const Vector& q) {
   Scratch& s = *scratch_;
   s.q = q;
   s.v.setZero();
-  const Vector holding = pinocchio::computeGeneralizedGravity(s.model, s.data, q);
+  const Vector holding = pinocchio::computeGeneralizedGravity(s.model, s.data, VectorArg(q));
   s.queue.assign(static_cast<std::size_t>(std::lround(s.options.delay / s.dt)), holding);
   s.random.seed(s.options.seed);
   s.normal.reset();
@@ -143,9 +146,9 @@ const Vector& RigidBody::velocity() const { return scratch_->v; }
 double RigidBody::energy() const {
   Scratch& s = *scratch_;
   // from the mass matrix: Pinocchio 4.1's own kinetic energy misses a part of the rotors'
-  pinocchio::crba(s.model, s.data, s.q, pinocchio::Convention::WORLD);
+  pinocchio::crba(s.model, s.data, VectorArg(s.q), pinocchio::Convention::WORLD);
   const Vector momentum = s.data.M.selfadjointView<Eigen::Upper>() * s.v;
-  return 0.5 * s.v.dot(momentum) + pinocchio::computePotentialEnergy(s.model, s.data, s.q);
+  return 0.5 * s.v.dot(momentum) + pinocchio::computePotentialEnergy(s.model, s.data, VectorArg(s.q));
 }
 
 }  // namespace tope

@@ -8,6 +8,8 @@
 #include <pinocchio/algorithm/jacobian.hpp>
 #include <pinocchio/algorithm/rnea.hpp>
 
+// Pinocchio's algorithms are compiled already for arguments of type VectorArg; for others this file compiles for long.
+
 namespace tope {
 
 struct RobotTerms::Scratch {
@@ -71,15 +73,16 @@ RobotTerms& RobotTerms::operator=(RobotTerms&&) noexcept = default;
 
 void RobotTerms::update(const VectorArg& q, const VectorArg& v) {
   scratch_->set_state(q, v);
-  pinocchio::computeJointJacobians(scratch_->model(), scratch_->data, scratch_->q);
+  pinocchio::computeJointJacobians(scratch_->model(), scratch_->data, VectorArg(scratch_->q));
 }
 
 void RobotTerms::update_dynamics(const VectorArg& q, const VectorArg& v) {
   Scratch& s = *scratch_;
   s.set_state(q, v);
-  pinocchio::crba(s.model(), s.data, s.q, pinocchio::Convention::WORLD);  // and the joint Jacobians
+  pinocchio::crba(s.model(), s.data, VectorArg(s.q),
+                  pinocchio::Convention::WORLD);             // and the joint Jacobians
   s.mass_matrix = s.data.M.selfadjointView<Eigen::Upper>();  // crba fills the upper triangle alone
-  pinocchio::nonLinearEffects(s.model(), s.data, s.q, s.v);
+  pinocchio::nonLinearEffects(s.model(), s.data, VectorArg(s.q), VectorArg(s.v));
 }
 
 const Matrix& RobotTerms::mass_matrix() const { return scratch_->mass_matrix; }

@@ -59,11 +59,11 @@ class BareTerms {
         no_acceleration_(Vector::Zero(robot.nv())),
         jacobian_(Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(6, robot.nv())) {}
 
-  void evaluate(const Vector& q, const Vector& v) {
+  void evaluate(const VectorArg& q, const VectorArg& v) {
     if (torque_) {
       pinocchio::crba(model_, data_, q, pinocchio::Convention::WORLD);
       pinocchio::nonLinearEffects(model_, data_, q, v);
-      pinocchio::forwardKinematics(model_, data_, q, v, no_acceleration_);
+      pinocchio::forwardKinematics(model_, data_, q, v, VectorArg(no_acceleration_));
       pinocchio::computeJointJacobians(model_, data_);
     } else {
       pinocchio::computeJointJacobians(model_, data_, q);
