@@ -72,8 +72,10 @@ campaign-continuity: build
 soak: build
 	$(BIN)/python bench/soak.py
 
-# The C++ tests under the address and undefined-behaviour sanitizers: all, or some rooms: ROOMS="law limit".
+# The C++ tests under the address and undefined-behaviour sanitizers: all, or some rooms and tests:
+# ROOMS="law limit" SANITIZED_TESTS='*/bounds_hold'.
 SANITIZED := build/Sanitize
+SANITIZED_TESTS ?= *
 ROOMS     ?= common controller examples law limit plant reference robot scenario task
 .PHONY: sanitize
 sanitize: setup
@@ -81,7 +83,8 @@ sanitize: setup
 	  -DCMAKE_CXX_FLAGS_RELEASE=-O1 -DTOPE_SANITIZE=ON -DTOPE_BUILD_TESTS=ON -DTOPE_BUILD_PYTHON=ON \
 	  -DPython_EXECUTABLE=$(abspath $(BIN))/python
 	$(BIN)/cmake --build $(SANITIZED) --target $(addsuffix _tests,$(ROOMS))
-	for room in $(ROOMS); do echo $$room; $(SANITIZED)/tests/$${room}_tests --log_level=error || exit 1; done
+	for room in $(ROOMS); do echo $$room; $(SANITIZED)/tests/$${room}_tests --log_level=error \
+	  '--run_test=$(SANITIZED_TESTS)' || exit 1; done
 
 test-python: viewer-tests
 	$(BIN)/pytest
