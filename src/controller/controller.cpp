@@ -376,8 +376,9 @@ const Status& Controller::update(const VectorArg& q, const VectorArg& v, double 
   }
   law_.solve(stack_, solution_);
   report(torque_mode() ? bound_torque(q) : bound_velocity());
-  if (!command_.allFinite()) {  // a target that moves said what is no number
+  if (!command_.allFinite()) {  // a target said what is no number, or too large a one
     status_.add(Event::bad_input);
+    motion_.setZero();  // the next cycle starts from it
     stand_still(u);
     return status_;
   }

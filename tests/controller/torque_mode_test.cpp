@@ -11,6 +11,7 @@
 #include <tope/task/damping.hpp>
 #include <tope/task/frame_orientation.hpp>
 #include <tope/task/frame_position.hpp>
+#include <tope/task/joint_position.hpp>
 #include <tope/task/posture.hpp>
 
 #include <boost/test/unit_test.hpp>
@@ -185,6 +186,26 @@ BOOST_AUTO_TEST_CASE(bad_input_holds_the_arm_up) {
   Vector small(3);
   controller.update(start(), Vector::Zero(8), 0.002, small);
   BOOST_TEST(small.norm() == 0.0);
+}
+
+BOOST_AUTO_TEST_CASE(a_target_beyond_all_numbers_holds_the_arm_up_until_it_is_gone) {
+  const Robot robot = youbot();
+  Controller controller(robot, options(LimitMethod::unilateral));
+  RobotTerms terms(robot);
+  terms.update_dynamics(start(), Vector::Zero(8));
+  const TaskHandle absurd =
+      controller.add(1, JointPosition(robot, {{"arm_joint_1", 1e308}}, Exponential(60.0)), {.over = 0.0});
+  Vector tau(8);
+  for (int i = 0; i < 3; ++i) {
+    controller.update(start(), Vector::Zero(8), i * 1e-3, tau);
+    BOOST_TEST(controller.status().has(Event::bad_input));
+    BOOST_TEST((tau - terms.bias()).norm() <= 1e-12);
+  }
+  controller.remove(absurd, {.over = 0.0});
+  add_tasks(controller, robot, 1.0);
+  controller.update(start(), Vector::Zero(8), 0.003, tau);
+  BOOST_TEST(!controller.status().has(Event::bad_input));
+  BOOST_TEST(tau.allFinite());
 }
 
 BOOST_AUTO_TEST_SUITE_END()
