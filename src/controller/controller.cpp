@@ -579,7 +579,7 @@ CommandBounds Controller::bound_torque(const VectorArg& q) {
   }
   const auto& base = robot_.base();
   const double yaw = base ? q[base->options().joints[2]] : 0.0;
-  return torque_bounds_.apply(limit_motion_, limit_command_, yaw, motion_, command_);
+  return torque_bounds_.apply(terms_.mass_matrix(), yaw, limit_motion_, limit_command_, motion_, command_);
 }
 
 void Controller::report(const CommandBounds& bounds) {

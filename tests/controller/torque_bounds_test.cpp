@@ -4,6 +4,7 @@
 
 #include <tope/controller/torque_bounds.hpp>
 
+#include <Eigen/Cholesky>
 #include <boost/test/unit_test.hpp>
 
 #include <algorithm>
@@ -86,7 +87,8 @@ BOOST_AUTO_TEST_CASE(takes_the_largest_scale) {
         if (!inside(robot, distribution, first, yaw)) {
           continue;
         }
-        const CommandBounds result = bounds.apply(Vector::Zero(8), first_torque, yaw, acceleration, torque);
+        const CommandBounds result =
+            bounds.apply(Matrix::Identity(8, 8), yaw, Vector::Zero(8), first_torque, acceleration, torque);
         BOOST_TEST(inside(robot, distribution, torque, yaw));
         BOOST_TEST((torque - (first + result.scale * (wanted - first))).norm() <= 1e-10);
         if (result.scale < 1.0) {
@@ -103,9 +105,40 @@ BOOST_AUTO_TEST_CASE(clips_what_the_bias_alone_asks_beyond) {
   Vector first = 2.0 * robot.effort_limit();
   Vector torque = first;
   Vector acceleration = Vector::Zero(8);
-  const CommandBounds result = bounds.apply(Vector::Zero(8), first, 0.3, acceleration, torque);
+  const CommandBounds result =
+      bounds.apply(Matrix::Identity(8, 8), 0.3, Vector::Zero(8), first, acceleration, torque);
   BOOST_TEST(result.clipped >= 0);
   BOOST_TEST(inside(robot, WheelDistribution::minimum_peak, torque, 0.3));
+}
+
+BOOST_AUTO_TEST_CASE(joints_that_are_not_clipped_accelerate_as_asked) {
+  const Robot robot = youbot();
+  TorqueBounds bounds(robot, WheelDistribution::minimum_peak);
+  int checked = 0;
+  for (int seed = 0; seed < 200; ++seed) {
+    BOOST_TEST_CONTEXT("seed " << seed) {
+      Random random(seed);
+      const Matrix root = random.matrix(8, 8);
+      const Matrix mass = root * root.transpose() + 20.0 * Matrix::Identity(8, 8);
+      Vector first = 0.05 * random.vector(8).cwiseProduct(robot.effort_limit());
+      first[0] = random.uniform(1.05, 1.2) * robot.effort_limit()[0];  // the base
+      const Vector asked = first;
+      Vector torque = first;
+      Vector acceleration = mass.llt().solve(first);
+      const Vector wanted = acceleration;
+      const CommandBounds result = bounds.apply(mass, 0.0, wanted, first, acceleration, torque);
+      BOOST_TEST(result.clipped >= 0);
+      BOOST_TEST(inside(robot, WheelDistribution::minimum_peak, torque, 0.0));
+      const Vector reached = mass.llt().solve(torque);
+      const bool arm_has_room = (torque.tail(5).cwiseAbs() - robot.effort_limit().tail(5)).maxCoeff() < -1e-6;
+      if (arm_has_room) {
+        ++checked;
+        BOOST_TEST((reached - wanted).tail(5).norm() <= 1e-9 * (1.0 + wanted.norm()));
+        BOOST_TEST((reached - wanted).head(3).norm() >= 1e-3);
+      }
+    }
+  }
+  BOOST_TEST(checked >= 20);
 }
 
 BOOST_AUTO_TEST_SUITE_END()
