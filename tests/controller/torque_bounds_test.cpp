@@ -1,5 +1,6 @@
 // TorqueBounds: every joint's, wheel's and acceleration bound holds, the scale is the largest that keeps them, and the
 // wheel maps are inverse to each other, of least norm and of least peak. Not here: CommandBounds (law room).
+#include "support/no_allocation.hpp"
 #include "support/robots.hpp"
 
 #include <tope/controller/torque_bounds.hpp>
@@ -122,11 +123,14 @@ BOOST_AUTO_TEST_CASE(joints_that_are_not_clipped_accelerate_as_asked) {
       const Matrix mass = root * root.transpose() + 20.0 * Matrix::Identity(8, 8);
       Vector first = 0.05 * random.vector(8).cwiseProduct(robot.effort_limit());
       first[0] = random.uniform(1.05, 1.2) * robot.effort_limit()[0];  // the base
-      const Vector asked = first;
       Vector torque = first;
       Vector acceleration = mass.llt().solve(first);
       const Vector wanted = acceleration;
-      const CommandBounds result = bounds.apply(mass, 0.0, wanted, first, acceleration, torque);
+      CommandBounds result;
+      {
+        const NoAllocation guard("a clipped torque");
+        result = bounds.apply(mass, 0.0, wanted, first, acceleration, torque);
+      }
       BOOST_TEST(result.clipped >= 0);
       BOOST_TEST(inside(robot, WheelDistribution::minimum_peak, torque, 0.0));
       const Vector reached = mass.llt().solve(torque);
