@@ -32,7 +32,6 @@ void ClosedRows::close(const PanelMatrix& rows) {
 }
 
 void ClosedRows::close(const RowSpectrum& spectrum, const Vector& shares) {
-  constexpr double nothing = 1e-16;
   for (int i = 0; i < spectrum.size(); ++i) {
     if (shares[i] > nothing) {
       const double scale = 1.0 / std::sqrt(spectrum.squared(i));

@@ -55,7 +55,7 @@ Hierarchy::Hierarchy(const Stack& stack, const Options& options)
     level.first = first;
     level.last = last;
     first = last;
-    ends_by_basis_ = ends_by_basis_ || (rows >= stack.size() && !stack.motion_is_y);
+    needs_basis_ = needs_basis_ || (rows >= stack.size() && !stack.motion_is_y);
   }
 }
 
@@ -75,7 +75,7 @@ void Hierarchy::solve(const Stack& stack, const Selection& selection, const Vect
   solution.set_zero();
   solution.laws = 1;
   hold_limits(stack, selection, limit_target);
-  by_basis_ = ends_by_basis_;
+  by_basis_ = needs_basis_;
   by_basis_ ? open_.reset(held_open_) : closed_.reset(held_rows_);
   y_ = held_y_;
   solution.y_limits = held_y_.head(stack.size());
@@ -136,7 +136,7 @@ void Hierarchy::hold_limit(const Stack& stack, Eigen::Index joint, double target
     held_y_[i] += missing / norm * task_(0, i);
   }
   held_rows_.close(task_);
-  if (ends_by_basis_) {
+  if (needs_basis_) {
     held_open_.close(held_open_.project(task_, gram_));
   }
 }
@@ -188,7 +188,8 @@ void Hierarchy::add_level(const Stack& stack, Level& level, bool last, Solution&
   // the spectrum of few rows costs little even if some of them have no direction left
   const bool by_rows = partial && (!crowded || m <= PanelMatrix::height);
   if (!by_basis_ && (closed_.shared() || !by_rows)) {
-    use_basis();
+    open_.reset(closed_);  // what follows needs a basis of what is open
+    by_basis_ = true;
   }
   project(plain, level);
   if (partial && !crowded && add_undamped(level, last)) {
@@ -215,12 +216,6 @@ void Hierarchy::add_rest() {
 
 bool Hierarchy::plain_is_undamped() const {
   return 1.0 / (1.0 + options_.epsilon * options_.epsilon) > options_.damped_below;
-}
-
-/// What follows needs a basis of what is open.
-void Hierarchy::use_basis() {
-  open_.reset(closed_);
-  by_basis_ = true;
 }
 
 /// A task in the directions that are open, A N or A Z.

@@ -37,9 +37,7 @@ void OpenBasis::reset(const ClosedRows& closed) {
       rows_.append_row(row_of(closed.rows(), i));
     }
   }
-  if (rows_.rows() > 0) {
-    close_rows();
-  }
+  close_rows();
   for (int i = 0; i < closed.size(); ++i) {
     if (closed.share(i) < 1.0) {
       multiply_transposed(open_, row_of(closed.rows(), i), shares_.data());
@@ -77,6 +75,9 @@ void OpenBasis::close(const PanelMatrix& b) {
 }
 
 void OpenBasis::close_rows() {
+  if (rows_.rows() == 0) {
+    return;
+  }
   reflect_rows();
   take_out(open_, whole_);
   if (with_image_) {
@@ -141,12 +142,11 @@ void OpenBasis::take_out(PanelMatrix& m, bool identity) {
 }
 
 void OpenBasis::close(const RowSpectrum& spectrum, const Vector& shares) {
-  constexpr double nothing = 1e-16;
   rows_.resize(0, size());
   for (int i = 0; i < spectrum.size(); ++i) {
     if (shares[i] >= 1.0) {
       rows_.append_row(spectrum.direction(i));
-    } else if (shares[i] > nothing) {
+    } else if (shares[i] > ClosedRows::nothing) {
       turn_all(spectrum.direction(i), shares[i] / spectrum.squared(i));
     }
   }

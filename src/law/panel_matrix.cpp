@@ -112,10 +112,6 @@ void multiply_transposed(const PanelMatrix& m, const double* w, double* out) {
   add_transposed_panels(m, 1, 1.0, w, out);
 }
 
-void add_transposed_product(const PanelMatrix& m, const double* w, double* out) {
-  add_transposed_panels(m, 0, 1.0, w, out);
-}
-
 void subtract_transposed_product(const PanelMatrix& m, const double* w, double* out) {
   add_transposed_panels(m, 0, -1.0, w, out);
 }

@@ -79,8 +79,8 @@ void RobotTerms::update(const VectorArg& q, const VectorArg& v) {
 void RobotTerms::update_dynamics(const VectorArg& q, const VectorArg& v) {
   Scratch& s = *scratch_;
   s.set_state(q, v);
-  pinocchio::crba(s.model(), s.data, VectorArg(s.q),
-                  pinocchio::Convention::WORLD);             // and the joint Jacobians
+  // the joint Jacobians too
+  pinocchio::crba(s.model(), s.data, VectorArg(s.q), pinocchio::Convention::WORLD);
   s.mass_matrix = s.data.M.selfadjointView<Eigen::Upper>();  // crba fills the upper triangle alone
   pinocchio::nonLinearEffects(s.model(), s.data, VectorArg(s.q), VectorArg(s.v));
 }

@@ -119,8 +119,7 @@ BOOST_AUTO_TEST_CASE(joints_that_are_not_clipped_accelerate_as_asked) {
   for (int seed = 0; seed < 200; ++seed) {
     BOOST_TEST_CONTEXT("seed " << seed) {
       Random random(seed);
-      const Matrix root = random.matrix(8, 8);
-      const Matrix mass = root * root.transpose() + 20.0 * Matrix::Identity(8, 8);
+      const Matrix mass = random.positive_definite(8, 20.0, 60.0);
       Vector first = 0.05 * random.vector(8).cwiseProduct(robot.effort_limit());
       first[0] = random.uniform(1.05, 1.2) * robot.effort_limit()[0];  // the base
       Vector torque = first;

@@ -1,4 +1,5 @@
 // ClosedRows against dense projectors, A N while rows are added; shares, and the basis of what they leave.
+#include "support/dense.hpp"
 #include "support/random.hpp"
 
 #include <tope/law/cholesky.hpp>
@@ -12,12 +13,6 @@
 
 namespace tope::test {
 namespace {
-
-Matrix dense(const PanelMatrix& m) {
-  Matrix result(m.rows(), m.cols());
-  m.copy_to(result);
-  return result;
-}
 
 /// I - A^+ A.
 Matrix null_space(const Matrix& a) {

@@ -1,4 +1,5 @@
 // OpenBasis against dense projectors: Z Z^T after rows are closed whole and by shares, and the image that comes along.
+#include "support/dense.hpp"
 #include "support/random.hpp"
 
 #include <tope/law/open_basis.hpp>
@@ -8,12 +9,6 @@
 
 namespace tope::test {
 namespace {
-
-Matrix dense(const PanelMatrix& m) {
-  Matrix result(m.rows(), m.cols());
-  m.copy_to(result);
-  return result;
-}
 
 /// Z Z^T (I - sum s (2 - s) v v^T) Z Z^T in the coordinates of y: what shares s leave of Z Z^T.
 Matrix expected_projector(const Matrix& z, const Matrix& rows, const Vector& shares) {

@@ -10,6 +10,8 @@ namespace tope {
 /// basis of what is left.
 class ClosedRows {
  public:
+  static constexpr double nothing = 1e-16;  ///< a share no larger is not taken
+
   /// For n unknowns, and matrices of up to `max_rows` rows that are projected.
   ClosedRows(int n, int max_rows);
 

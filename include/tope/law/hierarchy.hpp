@@ -60,7 +60,6 @@ class Hierarchy final : public StackLaw {
   void add_level(const Stack& stack, Level& level, bool last, Solution& solution);
   void add_rest();
   bool plain_is_undamped() const;
-  void use_basis();
   void project(bool plain, const Level& level);
   void move();
   bool add_undamped(const Level& level, bool last);
@@ -84,8 +83,8 @@ class Hierarchy final : public StackLaw {
   ClosedRows closed_;  // Q (k x n), until a level below one that takes by shares; from there on
   OpenBasis open_;     // Z (n x d)
   bool by_basis_ = false;
-  bool ends_by_basis_ = false;  // some level asks for all freedom and not for y itself: Z from the start
-  PanelMatrix motion_;          // T, for a task that asks for it
+  bool needs_basis_ = false;  // some level asks for all freedom and not for y itself: Z from the start
+  PanelMatrix motion_;        // T, for a task that asks for it
   PanelMatrix limit_row_;
   PanelMatrix task_;    // A N (m x n) or A Z (m x d), or that times L^-1
   PanelMatrix gram_;    // A N A^T, or G or its small twin

@@ -146,8 +146,6 @@ void add_product(const PanelMatrix& m, const double* x, double* out);
 void subtract_product(const PanelMatrix& m, const double* x, double* out);
 /// out (cols) = M^T w (rows).
 void multiply_transposed(const PanelMatrix& m, const double* w, double* out);
-/// out (cols) += M^T w (rows).
-void add_transposed_product(const PanelMatrix& m, const double* w, double* out);
 /// out (cols) -= M^T w (rows).
 void subtract_transposed_product(const PanelMatrix& m, const double* w, double* out);
 /// out = A B.
