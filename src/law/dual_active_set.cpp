@@ -10,8 +10,7 @@
 namespace tope {
 namespace {
 
-constexpr double kFeasibility = 1e-10;  // a row counts as violated beyond this, in the units of the bounds
-constexpr double kDependence = 1e-13;   // squared sine below which a row depends on the active ones
+constexpr double kDependentSine = 1e-13;  // squared sine below which a row depends on the active ones
 constexpr int kIterationsPerUnknown = 10;
 
 }  // namespace
@@ -113,7 +112,7 @@ bool DualActiveSet::satisfy(const Violation& violation, const Matrix& d, const V
       }
     }
     const double excess = violation.sign * (d.row(violation.row).dot(z_) - bound);
-    const bool dependent = curvature <= kDependence * direction_.squaredNorm();
+    const bool dependent = curvature <= kDependentSine * direction_.squaredNorm();
     const double full = dependent ? infinite : excess / curvature;
     const double length = std::min(partial, full);
     if (length == infinite) {

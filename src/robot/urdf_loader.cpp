@@ -45,15 +45,15 @@ std::string read(const std::filesystem::path& file) {
 }
 
 void make_revolute(urdf::Joint& joint) {
-  constexpr double unlimited = std::numeric_limits<double>::infinity();
+  constexpr double infinity = std::numeric_limits<double>::infinity();
   if (!joint.limits) {
     joint.limits = std::make_shared<urdf::JointLimits>();
-    joint.limits->effort = unlimited;
-    joint.limits->velocity = unlimited;
+    joint.limits->effort = infinity;
+    joint.limits->velocity = infinity;
   }
   joint.type = urdf::Joint::REVOLUTE;
-  joint.limits->lower = -unlimited;
-  joint.limits->upper = unlimited;
+  joint.limits->lower = -infinity;
+  joint.limits->upper = infinity;
 }
 
 void check_kind(const urdf::Joint& joint, const std::string& file) {

@@ -19,6 +19,8 @@
 #include <cmath>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(avoidance)
 namespace {
 
 constexpr std::array modes{Mode::velocity, Mode::torque};
@@ -118,8 +120,6 @@ struct Steepest {
 };
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(avoidance)
 
 BOOST_AUTO_TEST_CASE(keeps_every_distance_on_the_way_to_random_goals) {
   for (const Mode mode : modes) {

@@ -18,6 +18,8 @@
 #include <string>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(controller_no_allocation)
 namespace {
 
 void guarded_steps(Loop& loop, int cycles, const std::string& what) {
@@ -40,8 +42,6 @@ void for_every_method(Check check) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(controller_no_allocation)
 
 BOOST_AUTO_TEST_CASE(while_tasks_come_and_go) {
   for_every_method([](Loop& loop) {

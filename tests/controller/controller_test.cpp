@@ -19,6 +19,8 @@
 #include <string>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(controller)
 namespace {
 
 const Vector3 goal_position(0.490, 0.105, 0.068);
@@ -36,8 +38,6 @@ bool keeps_limits(LimitMethod method) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(controller)
 
 BOOST_AUTO_TEST_CASE(reaches_goals_that_are_free) {
   for (const std::string& name : limit_method_names()) {

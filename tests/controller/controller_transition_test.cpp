@@ -18,6 +18,8 @@
 #include <functional>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(controller_transition)
 namespace {
 
 /// While tasks come, overlap and go.
@@ -81,8 +83,6 @@ double largest_jump_of_changes(LimitMethod method, Mode mode, int seed, double d
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(controller_transition)
 
 BOOST_AUTO_TEST_CASE(commands_stay_continuous) {
   for (const LimitMethod method : {LimitMethod::unilateral, LimitMethod::chain}) {

@@ -13,6 +13,8 @@
 #include <string>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(heavy_robots)
 namespace {
 
 constexpr double kCarriage = 40.0;  // kg
@@ -63,8 +65,6 @@ Vector torques(const Robot& robot, int seed) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(heavy_robots)
 
 BOOST_AUTO_TEST_CASE(heaviest_joint_of_a_crane_is_its_slide) {
   BOOST_TEST(heaviest_joint(crane(1.0)) == kCarriage + 2.0 * kLink, boost::test_tools::tolerance(1e-12));

@@ -15,6 +15,8 @@
 #include <memory>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(replanning)
 namespace {
 
 constexpr double kDuration = 3.0;    // promised [s]
@@ -77,8 +79,6 @@ Outcome pursue(Mode mode, double replan_over, double dt) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(replanning)
 
 BOOST_AUTO_TEST_CASE(new_plan_is_gentler_and_arrives) {
   for (const Mode mode : {Mode::velocity, Mode::torque}) {

@@ -17,6 +17,8 @@
 #include <string>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(robots)
 namespace {
 
 struct Case {
@@ -88,8 +90,6 @@ Outcome drive(const Case& c, Mode mode, int seed, double dt) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(robots)
 
 BOOST_AUTO_TEST_CASE(limits_are_kept_and_commands_are_continuous) {
   int runs = 0;

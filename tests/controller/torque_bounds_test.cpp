@@ -12,6 +12,8 @@
 #include <cmath>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(torque_bounds)
 namespace {
 
 constexpr double kWheelBound = 2.137;  // Nm, of the youBot
@@ -31,8 +33,6 @@ bool inside(const Robot& robot, WheelDistribution distribution, const Vector& to
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(torque_bounds)
 
 BOOST_AUTO_TEST_CASE(wheel_torques_give_the_wrench_back) {
   const Robot robot = youbot();

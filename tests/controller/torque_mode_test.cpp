@@ -21,6 +21,8 @@
 #include <string>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(torque_mode)
 namespace {
 
 ControllerOptions options(LimitMethod method, double dt = 1e-3) {
@@ -42,8 +44,6 @@ void add_tasks(Controller& controller, const Robot& robot, double duration) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(torque_mode)
 
 BOOST_AUTO_TEST_CASE(starts_from_rest_without_a_step) {
   const Robot robot = youbot_before_obstacle();

@@ -18,6 +18,8 @@
 #include <vector>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(pose_loop)
 namespace {
 
 using tope_ros2_example::PoseLoop;
@@ -53,8 +55,6 @@ struct Robotic {
 };
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(pose_loop)
 
 BOOST_AUTO_TEST_CASE(stands_still_without_a_goal) {
   Robotic robot;

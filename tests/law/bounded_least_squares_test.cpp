@@ -2,6 +2,7 @@
 // 1 to 40 unknowns, its multipliers, and what it does when no point satisfies the bounds. Not here: how
 // many iterations it takes.
 #include "support/kkt.hpp"
+#include "support/panels.hpp"
 #include "support/random.hpp"
 #include "support/reference_unilateral.hpp"
 
@@ -14,6 +15,8 @@
 #include <string>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(bounded_least_squares)
 namespace {
 
 struct Problem {
@@ -71,13 +74,6 @@ Problem random_problem(Random& random, Kind kind) {
   return problem;
 }
 
-/// r as the solver takes it: whole panels, zero beyond.
-Vector padded(const Vector& r) {
-  Vector result = Vector::Zero(PanelMatrix::padded(r.size()));
-  result.head(r.size()) = r;
-  return result;
-}
-
 bool solve(BoundedLeastSquares& solver, const Problem& p) {
   return solver.solve(PanelMatrix(p.a), padded(p.r), p.mu, PanelMatrix(p.d), p.lower, p.upper);
 }
@@ -133,8 +129,6 @@ Worst check_random_problems(Kind kind, int seeds) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(bounded_least_squares)
 
 BOOST_AUTO_TEST_CASE(solves_random_problems) { check_random_problems(Kind::plain, 300); }
 BOOST_AUTO_TEST_CASE(solves_with_dependent_rows) { check_random_problems(Kind::dependent, 300); }

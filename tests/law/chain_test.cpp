@@ -1,6 +1,7 @@
 // Chain: the Lovasz extension by its integral form, vertices, one transition, exactness and priority with
 // transitions under way, continuity across ties, and the number of laws. Over Hierarchy and, for task
 // changes, over Unilateral. Not here: its inputs, the activations by state (limit room).
+#include "support/infinity_norm.hpp"
 #include "support/path.hpp"
 #include "support/random_stack.hpp"
 
@@ -16,6 +17,8 @@
 #include <set>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(chain)
 namespace {
 
 const Hierarchy::Options defaults;
@@ -72,11 +75,7 @@ RandomStackOptions random_options(Random& random) {
   return options;
 }
 
-double infinity_norm(const Vector& v) { return v.lpNorm<Eigen::Infinity>(); }
-
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(chain)
 
 BOOST_AUTO_TEST_CASE(equals_its_integral_form) {
   for (int seed = 0; seed < 200; ++seed) {

@@ -1,4 +1,5 @@
 // Cholesky against Eigen's solver for 1 to 40 rows, shifted and not, and where it must refuse.
+#include "support/panels.hpp"
 #include "support/random.hpp"
 
 #include <tope/law/cholesky.hpp>
@@ -8,13 +9,9 @@
 #include <boost/test/unit_test.hpp>
 
 namespace tope::test {
-namespace {
 
-Vector padded(const Vector& v) {
-  Vector result = Vector::Zero(PanelMatrix::padded(v.size()));
-  result.head(v.size()) = v;
-  return result;
-}
+BOOST_AUTO_TEST_SUITE(cholesky)
+namespace {
 
 void check(Cholesky& cholesky, const Matrix& m, double shift, Random& random) {
   const auto size = static_cast<int>(m.rows());
@@ -50,8 +47,6 @@ void check(Cholesky& cholesky, const Matrix& m, double shift, Random& random) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(cholesky)
 
 BOOST_AUTO_TEST_CASE(factorises_any_size_up_to_its_bound) {
   Cholesky cholesky(40);

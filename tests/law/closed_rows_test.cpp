@@ -1,5 +1,5 @@
 // ClosedRows against dense projectors, A N while rows are added; shares, and the basis of what they leave.
-#include "support/dense.hpp"
+#include "support/panels.hpp"
 #include "support/random.hpp"
 
 #include <tope/law/cholesky.hpp>
@@ -12,6 +12,8 @@
 #include <cmath>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(closed_rows)
 namespace {
 
 /// I - A^+ A.
@@ -32,8 +34,6 @@ void take(ClosedRows& closed, const Matrix& rows) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(closed_rows)
 
 BOOST_AUTO_TEST_CASE(project_like_dense_null_spaces) {
   for (int seed = 0; seed < 100; ++seed) {

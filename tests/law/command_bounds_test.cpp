@@ -9,6 +9,8 @@
 #include <cmath>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(command_bounds)
 namespace {
 
 struct Bounds {
@@ -41,8 +43,6 @@ double largest_scale(const Bounds& bounds, const Vector& first, const Vector& sh
 Vector three(double a, double b, double c) { return Vector3(a, b, c); }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(command_bounds)
 
 BOOST_AUTO_TEST_CASE(takes_the_largest_scale) {
   for (int seed = 0; seed < 300; ++seed) {

@@ -14,6 +14,8 @@
 #include <cmath>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(hierarchy)
 namespace {
 
 const Hierarchy::Options defaults;
@@ -63,8 +65,6 @@ Stack one_row_stack(double a, int level = 1) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(hierarchy)
 
 BOOST_AUTO_TEST_CASE(equals_dense_reference_away_from_singularities) {
   double largest = 0.0;

@@ -1,6 +1,7 @@
 // IntermediateValues: equal to the convex combination for one transition, the paper's values by a dense
 // reference, and the jump of the literal form when a row appears, which is why it is no default. Not here:
 // its behaviour in closed loop.
+#include "support/infinity_norm.hpp"
 #include "support/random_stack.hpp"
 #include "support/reference_hierarchy.hpp"
 
@@ -11,6 +12,8 @@
 #include <algorithm>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(intermediate_values)
 namespace {
 
 using Scope = IntermediateValues::Scope;
@@ -53,8 +56,6 @@ ReferenceHierarchy reference(const Stack& stack, Scope scope) {
   return result;
 }
 
-double infinity_norm(const Vector& v) { return v.lpNorm<Eigen::Infinity>(); }
-
 /// Regular random stacks with this many rows in transition.
 template <typename Check>
 int on_regular_stacks(int seeds, int transitions, Scope scope, Check check) {
@@ -75,8 +76,6 @@ int on_regular_stacks(int seeds, int transitions, Scope scope, Check check) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(intermediate_values)
 
 BOOST_AUTO_TEST_CASE(is_the_convex_combination_for_one_transition) {
   double largest = 0.0;

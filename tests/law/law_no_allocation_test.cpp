@@ -14,6 +14,8 @@
 #include <vector>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(law_no_allocation)
 namespace {
 
 /// The same pointer, but the compiler cannot know, and must not leave the allocation out.
@@ -24,8 +26,6 @@ T* kept(T* memory) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(law_no_allocation)
 
 BOOST_AUTO_TEST_CASE(guard_sees_every_way_to_the_heap) {
   const auto counted = [](auto action) {

@@ -1,5 +1,6 @@
 // Law: which phi over which activations each limit method takes; the methods' names; small numerical
 // helpers. Not here: what each law computes; they have files of their own.
+#include "support/infinity_norm.hpp"
 #include "support/random_stack.hpp"
 #include "support/text.hpp"
 
@@ -9,6 +10,8 @@
 #include <boost/test/unit_test.hpp>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(law)
 namespace {
 
 Vector solve(const Stack& stack, LimitMethod method) {
@@ -25,11 +28,7 @@ Vector phi(const Stack& stack, const Selection& selection) {
   return solution.y;
 }
 
-double infinity_norm(const Vector& v) { return v.lpNorm<Eigen::Infinity>(); }
-
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(law)
 
 BOOST_AUTO_TEST_CASE(without_transitions_every_equality_method_is_the_same) {
   Random random(1);

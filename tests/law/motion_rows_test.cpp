@@ -10,6 +10,8 @@
 #include <cmath>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(motion_rows)
 namespace {
 
 template <typename Law>
@@ -66,8 +68,6 @@ void check_marks() {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(motion_rows)
 
 BOOST_AUTO_TEST_CASE(unilateral_takes_marks_for_rows) { check_marks<Unilateral>(); }
 BOOST_AUTO_TEST_CASE(hierarchy_takes_marks_for_rows) { check_marks<Hierarchy>(); }

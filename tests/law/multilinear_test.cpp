@@ -1,5 +1,6 @@
 // Multilinear: its recursive form, one transition as the chain's, and what it does beyond its largest
 // number of transitions. Not here: continuity, which the chain shares.
+#include "support/infinity_norm.hpp"
 #include "support/random_stack.hpp"
 
 #include <tope/law/chain.hpp>
@@ -11,6 +12,8 @@
 #include <algorithm>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(multilinear)
 namespace {
 
 template <typename Blend>
@@ -47,11 +50,7 @@ Vector recursion(Stack stack) {
   return solution.y;
 }
 
-double infinity_norm(const Vector& v) { return v.lpNorm<Eigen::Infinity>(); }
-
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(multilinear)
 
 BOOST_AUTO_TEST_CASE(equals_its_recursive_form) {
   for (int seed = 0; seed < 60; ++seed) {

@@ -1,5 +1,5 @@
 // OpenBasis against dense projectors: Z Z^T after rows are closed whole and by shares, and the image that comes along.
-#include "support/dense.hpp"
+#include "support/panels.hpp"
 #include "support/random.hpp"
 
 #include <tope/law/open_basis.hpp>
@@ -8,6 +8,8 @@
 #include <boost/test/unit_test.hpp>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(open_basis)
 namespace {
 
 /// Z Z^T (I - sum s (2 - s) v v^T) Z Z^T in the coordinates of y: what shares s leave of Z Z^T.
@@ -23,8 +25,6 @@ Matrix expected_projector(const Matrix& z, const Matrix& rows, const Vector& sha
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(open_basis)
 
 BOOST_AUTO_TEST_CASE(closes_rows_whole_and_by_shares) {
   for (int seed = 0; seed < 100; ++seed) {

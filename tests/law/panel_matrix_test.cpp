@@ -1,6 +1,6 @@
 // PanelMatrix and its products against Eigen's, for all shapes up to 13 rows and columns and some larger ones, with
 // columns dropped in front and more memory reserved than used. Not here: speed.
-#include "support/dense.hpp"
+#include "support/panels.hpp"
 #include "support/random.hpp"
 
 #include <tope/law/panel_matrix.hpp>
@@ -10,13 +10,9 @@
 #include <vector>
 
 namespace tope::test {
-namespace {
 
-Vector padded(const Vector& v) {
-  Vector result = Vector::Zero(PanelMatrix::padded(v.size()));
-  result.head(v.size()) = v;
-  return result;
-}
+BOOST_AUTO_TEST_SUITE(panel_matrix)
+namespace {
 
 /// M in a larger memory that held other numbers, behind columns that are dropped.
 PanelMatrix used(Random& random, const Matrix& m) {
@@ -100,8 +96,6 @@ void check(Random& random, int rows, int cols) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(panel_matrix)
 
 BOOST_AUTO_TEST_CASE(products_equal_those_of_eigen) {
   for (int rows = 1; rows <= 13; ++rows) {

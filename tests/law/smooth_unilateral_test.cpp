@@ -14,6 +14,8 @@
 #include <vector>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(smooth_unilateral)
 namespace {
 
 const Unilateral::Options defaults;
@@ -50,8 +52,6 @@ double largest_kink(Law& law, const StackPath& path, int steps) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(smooth_unilateral)
 
 BOOST_AUTO_TEST_CASE(three_solutions_are_the_rule_of_gauss) {
   const double offset = 0.5 * std::sqrt(0.6);

@@ -7,6 +7,8 @@
 #include <boost/test/unit_test.hpp>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(symmetric_eigen)
 namespace {
 
 void check(SymmetricEigen& eigen, const Matrix& matrix) {
@@ -21,8 +23,6 @@ void check(SymmetricEigen& eigen, const Matrix& matrix) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(symmetric_eigen)
 
 BOOST_AUTO_TEST_CASE(decomposes_any_size_up_to_its_bound) {
   SymmetricEigen eigen(40);

@@ -1,6 +1,7 @@
 // Unilateral: the optimality conditions of every level and a dense reference with eiquadprog on random
 // stacks, half of them with inequality rows; bounds, priority, the level of the limits alone, continuity. Not here: its behaviour in closed loop
 // (controller room).
+#include "support/infinity_norm.hpp"
 #include "support/kkt.hpp"
 #include "support/path.hpp"
 #include "support/random_stack.hpp"
@@ -16,6 +17,8 @@
 #include <cmath>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(unilateral)
 namespace {
 
 const Unilateral::Options defaults;
@@ -45,8 +48,6 @@ void on_random_stacks(int seeds, Check check) {
   }
 }
 
-double infinity_norm(const Vector& v) { return v.size() > 0 ? v.lpNorm<Eigen::Infinity>() : 0.0; }
-
 /// Level 0 as its definition says: y over s / softness.
 KktResidual limit_level_residual(const Stack& stack, const ReferenceLevel& level, const Vector& y) {
   const Eigen::Index n = stack.size();
@@ -60,8 +61,6 @@ KktResidual limit_level_residual(const Stack& stack, const ReferenceLevel& level
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(unilateral)
 
 BOOST_AUTO_TEST_CASE(equals_dense_reference) {
   double largest = 0.0;

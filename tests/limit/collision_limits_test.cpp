@@ -17,6 +17,8 @@
 #include <limits>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(collision_limits)
 namespace {
 
 constexpr double kRadius = 0.03;
@@ -209,8 +211,6 @@ void on_scenes(int seeds, Check check) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(collision_limits)
 
 BOOST_AUTO_TEST_CASE(distances_equal_closed_forms) {
   double largest = 0.0;

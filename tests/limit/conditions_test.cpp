@@ -14,6 +14,8 @@
 #include <string>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(limit_conditions)
 namespace {
 
 constexpr int kJoint = 4;  // arm_joint_2
@@ -33,8 +35,6 @@ const Condition* find(const std::vector<Condition>& list, const std::string& nam
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(limit_conditions)
 
 BOOST_AUTO_TEST_CASE(defaults_are_safe_at_a_kilohertz) {
   for (const std::string& name : limit_method_names()) {

@@ -11,6 +11,8 @@
 #include <cmath>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(joint_limits_second_order)
 namespace {
 
 constexpr int kJoint = 7;  // arm_joint_5
@@ -55,8 +57,6 @@ double worst_crossing(const Robot& robot, double dt, double buffer) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(joint_limits_second_order)
 
 BOOST_AUTO_TEST_CASE(row_is_the_papers_on_the_predicted_position) {
   const Robot robot = youbot();

@@ -1,5 +1,5 @@
 // JointLimits: rows, activations and bounds at the buffer's edge, at the limit, beyond it and without one;
-// engagement; bad options. Ramps and their slope factor. Not here: that they keep a joint inside over time
+// engagement; bad options. Not here: that they keep a joint inside over time
 // (conditions_test, controller room).
 #include "support/robots.hpp"
 #include "support/text.hpp"
@@ -8,12 +8,10 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace tope::test {
-namespace {
+namespace joint_limits {
 
 constexpr int kJoint = 4;  // arm_joint_2: [-1.117011, 1.553343] rad, 1.570796 rad/s
 constexpr int kYaw = 2;    // without limits
@@ -36,7 +34,7 @@ struct Fixture {
 
 constexpr auto near = [](double a, double b) { return std::abs(a - b) <= 1e-12; };
 
-}  // namespace
+}  // namespace joint_limits
 
 BOOST_FIXTURE_TEST_SUITE(joint_limits, Fixture)
 
@@ -230,42 +228,6 @@ BOOST_AUTO_TEST_CASE(bad_options_are_refused) {
   refuse({.buffers = {{"arm_joint_2", 1.4}}},
          {"buffers of arm_joint_2 overlap", "2.67", "2.8", "below 1.33"});
   refuse({.buffer = 1.4}, {"overlap"});
-}
-
-BOOST_AUTO_TEST_SUITE_END()
-
-BOOST_AUTO_TEST_SUITE(ramps)
-
-BOOST_AUTO_TEST_CASE(rise_from_zero_to_one) {
-  for (const Ramp shape : {Ramp::raised_cosine, Ramp::quintic}) {
-    BOOST_TEST(ramp(shape, -0.5) == 0.0);
-    BOOST_TEST(ramp(shape, 0.0) == 0.0);
-    BOOST_TEST(near(ramp(shape, 0.5), 0.5));
-    BOOST_TEST(ramp(shape, 1.0) == 1.0);
-    BOOST_TEST(ramp(shape, 7.0) == 1.0);
-    const double h = 1e-5;
-    BOOST_TEST(ramp(shape, h) <= 10.0 * h * h);  // no kink at either end
-    BOOST_TEST(1.0 - ramp(shape, 1.0 - h) <= 10.0 * h * h);
-    for (double x = 0.0; x < 1.0; x += 0.01) {
-      BOOST_TEST(ramp(shape, x + 0.01) >= ramp(shape, x));
-      BOOST_TEST(near(ramp(shape, x) + ramp(shape, 1.0 - x), 1.0));
-    }
-  }
-  BOOST_TEST(
-      near(ramp(Ramp::raised_cosine, 0.25), 0.5 - 0.5 * std::cos(0.25 * std::numbers::pi)));  // (24)-(25)
-}
-
-BOOST_AUTO_TEST_CASE(slope_factor_is_the_supremum_rounded_up) {
-  for (const Ramp shape : {Ramp::raised_cosine, Ramp::quintic}) {
-    double largest = 0.0;
-    for (int i = 1; i <= 1000000; ++i) {
-      const double x = i * 1e-6;
-      largest = std::max(largest, (1.0 - ramp(shape, 1.0 - x)) / x);
-    }
-    BOOST_TEST(largest <= ramp_slope_factor(shape));
-    BOOST_TEST(ramp_slope_factor(shape) - largest <= 2e-4);
-    BOOST_TEST_MESSAGE("slope factor " << largest << ", stated " << ramp_slope_factor(shape));
-  }
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -12,7 +12,7 @@
 #include <limits>
 
 namespace tope::test {
-namespace {
+namespace moving_limits {
 
 constexpr int kJoint = 4;
 constexpr double kPeriod = 1e-3;
@@ -32,7 +32,7 @@ struct Fixture {
   }
 };
 
-}  // namespace
+}  // namespace moving_limits
 
 BOOST_FIXTURE_TEST_SUITE(moving_limits, Fixture)
 

@@ -11,6 +11,8 @@
 #include <cmath>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(potential_field)
 namespace {
 
 constexpr double kInfluence = 0.2;
@@ -29,8 +31,6 @@ double potential(const Robot& robot, const Vector& q) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(potential_field)
 
 BOOST_AUTO_TEST_CASE(is_minus_the_gradient_of_its_potential) {
   const Robot robot = youbot();

@@ -14,7 +14,7 @@
 #include <limits>
 
 namespace tope::test {
-namespace {
+namespace mujoco {
 
 constexpr double kPeriod = 1e-3;
 using Drive = MujocoOptions::Drive;
@@ -59,7 +59,7 @@ struct Fixture {
   }
 };
 
-}  // namespace
+}  // namespace mujoco
 
 BOOST_FIXTURE_TEST_SUITE(mujoco, Fixture)
 

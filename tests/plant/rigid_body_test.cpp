@@ -11,6 +11,8 @@
 #include <cmath>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(rigid_body)
 namespace {
 
 constexpr double kPeriod = 1e-3;
@@ -33,8 +35,6 @@ Vector run(const Robot& robot, const RigidBodyOptions& options, const Vector& to
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(rigid_body)
 
 BOOST_AUTO_TEST_CASE(falls_with_constant_energy) {
   const Robot robot = youbot();

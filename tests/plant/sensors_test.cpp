@@ -10,7 +10,7 @@
 #include <cmath>
 
 namespace tope::test {
-namespace {
+namespace sensors {
 
 constexpr double kPeriod = 1e-3;
 using Localisation = SensorOptions::Localisation;
@@ -44,7 +44,7 @@ struct Drive {
   }
 };
 
-}  // namespace
+}  // namespace sensors
 
 BOOST_FIXTURE_TEST_SUITE(sensors, Drive)
 

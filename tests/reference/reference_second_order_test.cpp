@@ -10,6 +10,8 @@
 #include <cmath>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(reference_second_order)
 namespace {
 
 /// Integrates e'' = reference by RK4 from 0 to `duration`; returns error and rate at the end.
@@ -38,8 +40,6 @@ std::pair<Vector, Vector> integrate(const Reference& reference, Vector e, Vector
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(reference_second_order)
 
 BOOST_AUTO_TEST_CASE(exponential_has_a_double_pole) {
   Random random(1);

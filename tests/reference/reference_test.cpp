@@ -12,6 +12,8 @@
 #include <cmath>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(reference)
 namespace {
 
 constexpr double kStart = 1.5;     // s
@@ -44,8 +46,6 @@ Matrix3 skew(const Vector3& w) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(reference)
 
 BOOST_AUTO_TEST_CASE(new_plan_continues_and_arrives_in_the_time_that_is_left) {
   Random random(4);

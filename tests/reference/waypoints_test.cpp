@@ -14,6 +14,8 @@
 #include <vector>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(waypoints)
 namespace {
 
 std::vector<double> random_times(Random& random, int count) {
@@ -63,8 +65,6 @@ Vector3 unskew(const Matrix3& m) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(waypoints)
 
 BOOST_AUTO_TEST_CASE(points_are_passed_at_their_times) {
   for (int count = 2; count <= 7; ++count) {

@@ -13,6 +13,8 @@
 #include <string>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(braking)
 namespace {
 
 /// A link on a horizontal axis with its mass [kg] half a metre away; `inertial` false: the link has none.
@@ -31,8 +33,6 @@ Robot from_text(const std::string& urdf, const RobotConfig& config = {}) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(braking)
 
 BOOST_AUTO_TEST_CASE(pendulum_has_a_closed_form) {
   RobotConfig config;

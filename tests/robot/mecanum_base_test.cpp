@@ -11,6 +11,8 @@
 #include <cmath>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(mecanum_base)
 namespace {
 
 const MecanumBaseOptions youbot_base{.joints = {0, 1, 2},
@@ -21,8 +23,6 @@ const MecanumBaseOptions youbot_base{.joints = {0, 1, 2},
                                      .wheel_rotor_inertia = 0.00901};
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(mecanum_base)
 
 BOOST_AUTO_TEST_CASE(wheel_map_is_the_papers) {
   const MecanumBase base(youbot_base);

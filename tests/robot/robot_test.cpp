@@ -18,6 +18,8 @@
 #include <vector>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(robot)
 namespace {
 
 const std::string box_inertia =
@@ -50,8 +52,6 @@ void check_config_error(const std::string& text, std::initializer_list<std::stri
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(robot)
 
 BOOST_AUTO_TEST_CASE(youbot_has_its_joints_and_bounds) {
   const Robot robot = youbot();

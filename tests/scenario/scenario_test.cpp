@@ -14,6 +14,8 @@
 #include <string>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(scenario)
 namespace {
 
 /// Line numbers in the tests count from the line of `name`.
@@ -62,8 +64,6 @@ void check_override_refused(const std::map<std::string, std::string>& overrides,
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(scenario)
 
 BOOST_AUTO_TEST_CASE(sets_what_it_says) {
   const TemporaryFile file("scenario.yaml", good_scenario());

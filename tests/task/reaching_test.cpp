@@ -28,6 +28,8 @@
 #include <vector>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(reaching)
 namespace {
 
 /// Norm of the error that `task` has left at level 1 after `duration`.
@@ -73,8 +75,6 @@ double error_left_by_torques(const Task& task, double duration) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(reaching)
 
 BOOST_AUTO_TEST_CASE(camera_looks_at_a_point) {
   Loop loop(youbot(), {});

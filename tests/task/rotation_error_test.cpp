@@ -11,6 +11,8 @@
 #include <numbers>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(rotation_error)
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -22,8 +24,6 @@ Matrix3 exponential(const Vector3& e) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(rotation_error)
 
 BOOST_AUTO_TEST_CASE(inverts_the_exponential) {
   BOOST_TEST(rotation_vector(Matrix3::Identity()).norm() == 0.0);

@@ -25,6 +25,8 @@
 #include <vector>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(task_second_order)
 namespace {
 
 constexpr double kFarFromFlip = 2.0;  // rad
@@ -68,8 +70,6 @@ void check_second_order(const Robot& robot, Task& task, int seeds, double skip_a
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(task_second_order)
 
 BOOST_AUTO_TEST_CASE(frame_position_accelerates) {
   const Robot robot = youbot();

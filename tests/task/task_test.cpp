@@ -24,6 +24,8 @@
 #include <numbers>
 
 namespace tope::test {
+
+BOOST_AUTO_TEST_SUITE(task)
 namespace {
 
 constexpr double kFarFromFlip = 2.0;  // rad
@@ -72,8 +74,6 @@ Target<RotationTarget> spinning_target(Random& random) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(task)
 
 BOOST_AUTO_TEST_CASE(frame_position_rates) {
   const Robot robot = youbot();

@@ -14,6 +14,9 @@ namespace tope {
 /// them.
 class DualActiveSet {
  public:
+  /// A row counts as violated beyond this, in the units of the bounds.
+  static constexpr double kFeasibility = 1e-10;
+
   DualActiveSet(int n, int constraints);
 
   /// A^T A (d x d, lower triangle), A^T r (d or more), D (p x n), lower and upper (p); unknowns beyond d <= n are in no

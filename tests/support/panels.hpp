@@ -11,4 +11,11 @@ inline Matrix dense(const PanelMatrix& m) {
   return result;
 }
 
+/// The vector as products with panels take it: whole panels, zero beyond.
+inline Vector padded(const Vector& v) {
+  Vector result = Vector::Zero(PanelMatrix::padded(v.size()));
+  result.head(v.size()) = v;
+  return result;
+}
+
 }  // namespace tope::test
