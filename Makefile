@@ -17,6 +17,7 @@ setup: $(SETUP)
 
 $(SETUP): requirements.lock
 	$(PYTHON) -m venv $(VENV)
+	$(BIN)/pip install --quiet --disable-pip-version-check pip==25.3  # a system's own may not pass settings to CMake
 	$(BIN)/pip install --quiet --disable-pip-version-check -r requirements.lock
 	touch $@
 
