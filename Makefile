@@ -23,7 +23,7 @@ $(SETUP): requirements.lock
 	touch $@
 
 # Builds the C++ library and its Python extension and installs the package in editable mode. UNITY=ON compiles
-# several files as one: a whole build takes half the time, the law runs 1 to 2 % slower.
+# several files as one: a whole build takes half the time, the law runs 1 to 3 % slower.
 build: setup viewer
 	$(BIN)/pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps \
 	  -C cmake.define.TOPE_BUILD_TESTS=$(or $(TESTS),OFF) -C cmake.define.CMAKE_UNITY_BUILD=$(UNITY) -e .
@@ -124,7 +124,7 @@ bench-peers: build
 near-goals: build
 	$(BIN)/python bench/near_goals.py --page
 
-# What the options of the method unilateral do, on six robots: docs/parameters.md. Half an hour.
+# What the options of the method unilateral do, on six robots: docs/parameters.md. Half an hour or more.
 .PHONY: parameters
 parameters: build
 	$(BIN)/python bench/parameters.py --page

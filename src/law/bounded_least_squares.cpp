@@ -154,9 +154,9 @@ bool BoundedLeastSquares::settle(const Vector& lower, const Vector& upper, Activ
   bool settled = true;
   std::fill(active.begin(), active.end(), 0);
   for (Eigen::Index i = 0; i < multipliers_.size(); ++i) {
-    if (row_value_[i] > upper[i] + DualActiveSet::kFeasibility) {
+    if (row_value_[i] > upper[i] + DualActiveSet::feasibility) {
       active[static_cast<std::size_t>(i)] = 1;
-    } else if (row_value_[i] < lower[i] - DualActiveSet::kFeasibility) {
+    } else if (row_value_[i] < lower[i] - DualActiveSet::feasibility) {
       active[static_cast<std::size_t>(i)] = -1;
     } else {
       continue;

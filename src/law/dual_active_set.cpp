@@ -72,7 +72,7 @@ void DualActiveSet::start(const PanelMatrix& gram, const Vector& gradient, doubl
 }
 
 DualActiveSet::Violation DualActiveSet::worst_violation(const Vector& lower, const Vector& upper) const {
-  Violation worst{.row = -1, .sign = 0.0, .value = kFeasibility};
+  Violation worst{.row = -1, .sign = 0.0, .value = feasibility};
   for (Eigen::Index i = 0; i < row_value_.size(); ++i) {
     if (row_value_[i] - upper[i] > worst.value) {
       worst = {.row = i, .sign = 1.0, .value = row_value_[i] - upper[i]};

@@ -15,7 +15,7 @@ namespace tope {
 class DualActiveSet {
  public:
   /// A row counts as violated beyond this, in the units of the bounds.
-  static constexpr double kFeasibility = 1e-10;
+  static constexpr double feasibility = 1e-10;
 
   DualActiveSet(int n, int constraints);
 
