@@ -95,6 +95,16 @@ def states(mode: str, options: str, count: int) -> tuple[str, str]:
     return f"{fallen} of {len(outcomes)}", f"{100 * max(each.jumps[0] for each in outcomes):.2g} %"
 
 
+def refused(tried: Sequence[Mapping[str, Any]]) -> str:
+    """Robots that the option does not suit: the controller says so when it is built."""
+    absent = [each for each in tried if "absent" in each]
+    for each in absent:
+        if "limits are not safe" not in each["absent"]:
+            raise SystemExit(f"{each['robot']}, {each['configuration']}: {each['absent']}")
+    robots = sorted({each["robot"] for each in absent})
+    return f" (refused by {', '.join(robots)})" if robots else ""
+
+
 def table(mode: str, count: int, state_count: int, out: Path) -> str:
     """Of one mode."""
     wanted = goals(mode, count, out)
@@ -102,17 +112,18 @@ def table(mode: str, count: int, state_count: int, out: Path) -> str:
     (out / f"{mode}.json").write_text(json.dumps(found, indent=1), encoding="utf-8")
     rows = []
     for options in SETS[mode]:
-        mine = [
+        tried = [
             each
             for job, each in zip(wanted, found, strict=True)
             if job.program.configuration == (options or peers.DEFAULT)
         ]
+        mine = [each for each in tried if "runs" in each]
         runs = {
             name: [run for each in mine if each["lowest"] == name for run in each["runs"]] for name in LOWEST
         }
         rows.append(
             (
-                f"`{options}`" if options else "defaults",
+                (f"`{options}`" if options else "defaults") + refused(tried),
                 *("{} of {}".format(*near_goals.reached_of(runs[name])) for name in LOWEST),
                 *steepness(mine),
                 *states(mode, options, state_count),
