@@ -417,9 +417,11 @@ void Controller::fill_limits(const VectorArg& q, const VectorArg& v) {
   stack_.limit_target = limits_.target();
   stack_.motion_lower = limits_.motion_lower();
   stack_.motion_upper = limits_.motion_upper();
-  limits_.headroom(headroom_, free_headroom_, stack_.headroom_lower, stack_.headroom_upper);
-  stack_.headroom_lower /= headroom_unit_;
-  stack_.headroom_upper /= headroom_unit_;
+  if (options_.limits.method == LimitMethod::unilateral) {
+    limits_.headroom(headroom_, free_headroom_, stack_.headroom_lower, stack_.headroom_upper);
+    stack_.headroom_lower /= headroom_unit_;
+    stack_.headroom_upper /= headroom_unit_;
+  }
   if (collisions_) {
     fill_collisions(*collisions_);
   }

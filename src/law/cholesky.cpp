@@ -145,10 +145,66 @@ void Cholesky::whiten(double* x) const {
 }
 
 void Cholesky::whiten(PanelMatrix& x) const {
+  if (lower_.panels() == 1) {
+    whiten_panel(x.panel(0), x.cols());
+    return;
+  }
   for (Eigen::Index j = 0; j < x.cols(); ++j) {
     forward(x.panel(0) + height * j, x.stride(), 0);
   }
   scale_rows(x);
+}
+
+/// The same for up to four rows, with all of L in registers.
+void Cholesky::whiten_panel(double* panel, Eigen::Index cols) const {
+  const double* lower = lower_.panel(0);
+  const Column first = column(lower, 0);
+  const Column second = column(lower, 1);
+  const Column third = column(lower, 2);
+  const Column scale = column(inverse_pivots_.data(), 0).cwiseSqrt();
+  for (Eigen::Index j = 0; j < cols; ++j) {
+    Column now = column(panel, j);
+    now -= now[0] * first;
+    now -= now[1] * second;
+    now -= now[2] * third;
+    column(panel, j) = now.cwiseProduct(scale);
+  }
+}
+
+void Cholesky::whiten_twice(PanelMatrix& m) const {
+  whiten(m);
+  for (Eigen::Index p = 0; p < m.panels(); ++p) {
+    double* panel = m.panel(p);
+    for (Eigen::Index j = 0; j < m.cols(); ++j) {
+      Column now = column(panel, j);
+      for (Eigen::Index k = 0; k < j; ++k) {
+        now -= lower_(j, k) * column(panel, k);
+      }
+      column(panel, j) = now;
+    }
+    scale_columns(panel);
+  }
+}
+
+void Cholesky::whiten_across(PanelMatrix& x) const {
+  for (Eigen::Index p = 0; p < x.panels(); ++p) {
+    double* panel = x.panel(p);
+    scale_columns(panel);
+    for (Eigen::Index j = x.cols() - 1; j >= 0; --j) {
+      Column now = column(panel, j);
+      for (Eigen::Index k = j + 1; k < x.cols(); ++k) {
+        now -= lower_(k, j) * column(panel, k);
+      }
+      column(panel, j) = now;
+    }
+  }
+}
+
+/// X <- X D^-1/2, one panel of X.
+void Cholesky::scale_columns(double* panel) const {
+  for (Eigen::Index j = 0; j < size(); ++j) {
+    column(panel, j) *= std::sqrt(inverse_pivots_[j]);
+  }
 }
 
 void Cholesky::invert_factor(PanelMatrix& out) const {

@@ -5,7 +5,7 @@
 namespace tope {
 
 ClosedRows::ClosedRows(int n, int max_rows)
-    : rows_(n, n), shares_(Vector::Zero(n)), along_(max_rows, n), direction_(n) {
+    : rows_(n, n), shares_(Vector::Zero(n)), along_(max_rows, n) {
   reset();
 }
 
@@ -34,15 +34,22 @@ void ClosedRows::close(const PanelMatrix& rows) {
 void ClosedRows::close(const RowSpectrum& spectrum, const Vector& shares) {
   for (int i = 0; i < spectrum.size(); ++i) {
     if (shares[i] > nothing) {
-      const double scale = 1.0 / std::sqrt(spectrum.squared(i));
-      for (Eigen::Index j = 0; j < rows_.cols(); ++j) {
-        direction_[j] = scale * spectrum.direction(i)[j];
-      }
       shares_[size()] = shares[i];
-      rows_.append_row(direction_.data());
+      rows_.append_row(spectrum.directions(), i, 1.0 / std::sqrt(spectrum.squared(i)));
       whole_ += shares[i] >= 1.0 ? 1 : 0;
     }
   }
+}
+
+void ClosedRows::close(const double* direction) {
+  shares_[size()] = 1.0;
+  rows_.append_row(direction);
+  ++whole_;
+}
+
+void ClosedRows::keep(int count) {
+  rows_.resize(count, rows_.cols());
+  whole_ = static_cast<int>((shares_.head(count).array() >= 1.0).count());
 }
 
 void ClosedRows::close_all() {

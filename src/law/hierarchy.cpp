@@ -10,33 +10,38 @@ namespace {
 
 int workspace_rows(const Stack& stack) { return std::max(stack.size(), stack.max_level_rows()); }
 
-}  // namespace
+/// True when some level asks for all freedom, and not for y itself.
+bool has_full_level(const Stack& stack) {
+  const auto fills = [&](const TaskRows& task) {
+    Eigen::Index rows = 0;
+    for (const TaskRows& other : stack.tasks) {
+      rows += other.level == task.level ? other.b.size() : 0;
+    }
+    return rows >= stack.size();
+  };
+  return !stack.motion_is_y && std::any_of(stack.tasks.begin(), stack.tasks.end(), fills);
+}
 
-Hierarchy::Level::Level(const Stack& stack, int max_rows)
-    : given(stack.size(), max_rows), metric(max_rows, max_rows), factor(max_rows) {}
+}  // namespace
 
 Hierarchy::Hierarchy(const Stack& stack, const Options& options)
     : options_(options),
-      partial_(stack, workspace_rows(stack)),
-      spectrum_(stack.size()),
-      held_(static_cast<std::size_t>(stack.size()), 0),
-      held_target_(stack.size()),
-      held_rows_(stack.size(), 1),
-      held_open_(stack.size()),
-      held_y_(Vector::Zero(PanelMatrix::padded(stack.size()))),
+      needs_basis_(has_full_level(stack)),
+      limits_(stack.size(), needs_basis_),
+      tasks_(stack.tasks.size(), 0),
       closed_(stack.size(), workspace_rows(stack)),
       open_(stack.size()),
       motion_(stack.size(), stack.size()),
-      limit_row_(1, stack.size()),
       task_(workspace_rows(stack), stack.size()),
       gram_(workspace_rows(stack), workspace_rows(stack)),
-      excess_(workspace_rows(stack), workspace_rows(stack)),
-      factor_(workspace_rows(stack)),
-      clear_(workspace_rows(stack)),
-      y_(held_y_),
+      factor_(stack.size()),
+      clear_(stack.size()),
+      eigen_(stack.size()),
+      spectrum_(stack.size(), stack.size()),
+      y_(Vector::Zero(PanelMatrix::padded(stack.size()))),
       residual_(Vector::Zero(PanelMatrix::padded(workspace_rows(stack)))),
       weights_(residual_),
-      step_(residual_),
+      step_(y_),
       shares_(stack.size()) {
   if (!(0.0 < options.locked_above && options.locked_above < options.damped_below &&
         options.damped_below < 1.0 && options.epsilon > 0.0)) {
@@ -51,19 +56,18 @@ Hierarchy::Hierarchy(const Stack& stack, const Options& options)
     for (; last < stack.tasks.size() && stack.tasks[last].level == stack.tasks[first].level; ++last) {
       rows += stack.tasks[last].b.size();
     }
-    Level& level = levels_.emplace_back(stack, static_cast<int>(rows));
-    level.first = first;
-    level.last = last;
+    levels_.emplace_back(stack.size(), static_cast<int>(rows));
+    ranges_.push_back({first, last});
     first = last;
-    needs_basis_ = needs_basis_ || (rows >= stack.size() && !stack.motion_is_y);
   }
 }
 
 void Hierarchy::begin() {
-  for (Level& level : levels_) {
-    level.ready = false;
+  for (HierarchyLevel& level : levels_) {
+    level.forget();
   }
-  release_limits();
+  limits_.release();
+  shared_ = 0;
 }
 
 void Hierarchy::solve(const Stack& stack, const Selection& selection, Solution& solution) {
@@ -74,130 +78,180 @@ void Hierarchy::solve(const Stack& stack, const Selection& selection, const Vect
                       Solution& solution) {
   solution.set_zero();
   solution.laws = 1;
-  hold_limits(stack, selection, limit_target);
+  select_tasks(selection);
+  hold_limits(stack, selection);
+  limits_.meet(limit_target, y_);
+  solution.y_limits = y_.head(stack.size());
   by_basis_ = needs_basis_;
-  by_basis_ ? open_.reset(held_open_) : closed_.reset(held_rows_);
-  y_ = held_y_;
-  solution.y_limits = held_y_.head(stack.size());
-  for (Level& level : levels_) {
-    const auto begin = selection.tasks.begin() + static_cast<std::ptrdiff_t>(level.first);
-    const auto end = selection.tasks.begin() + static_cast<std::ptrdiff_t>(level.last);
-    const auto selected = std::count(begin, end, 1);
-    if (selected == 0) {
+  if (by_basis_) {
+    open_.reset(limits_.open());
+  } else if (shared_ == 0) {
+    closed_.reset(limits_.closed());
+  }
+  const std::size_t known = shared_;
+  shared_ = needs_basis_ ? 0 : levels_.size();
+  for (std::size_t i = 0; i < levels_.size(); ++i) {
+    if (empty(i)) {
       continue;
     }
-    const bool last = level.last == stack.tasks.size();
-    const bool complete = selected == end - begin;
-    Level& chosen = complete ? level : partial_;
-    if (!complete || !level.ready) {
-      chosen.first = level.first;
-      prepare(stack, selection, chosen);
+    if (!levels_[i].ready()) {
+      prepare(stack, selection, ranges_[i].first, levels_[i]);
     }
-    add_level(stack, chosen, last, solution);
+    const bool last = i + 1 == levels_.size();
+    if (i + 1 < known) {
+      add_known(levels_[i], solution);
+    } else if (!add_level(stack, levels_[i], i < known, last, solution)) {
+      shared_ = std::min(shared_, i + 1);
+    }
   }
   solution.y = y_.head(stack.size());
 }
 
+/// A level that has other tasks than in the selection before is gathered anew.
+void Hierarchy::select_tasks(const Selection& selection) {
+  if (selection.tasks == tasks_) {
+    return;
+  }
+  for (std::size_t i = 0; i < levels_.size(); ++i) {
+    for (std::size_t task = ranges_[i].first; task < ranges_[i].last; ++task) {
+      if (selection.tasks[task] != tasks_[task]) {
+        levels_[i].forget();
+      }
+    }
+  }
+  tasks_ = selection.tasks;
+  shared_ = 0;
+}
+
+/// True when none of a level's tasks is selected.
+bool Hierarchy::empty(std::size_t level) const {
+  const auto first = tasks_.begin() + static_cast<std::ptrdiff_t>(ranges_[level].first);
+  const auto last = tasks_.begin() + static_cast<std::ptrdiff_t>(ranges_[level].last);
+  return std::find(first, last, 1) == last;
+}
+
 /// Level 0. The selections of a chain grow: what is held already stays.
-void Hierarchy::hold_limits(const Stack& stack, const Selection& selection, const Vector& limit_target) {
-  for (std::size_t j = 0; j < held_.size(); ++j) {
-    const auto joint = static_cast<Eigen::Index>(j);
-    if (held_[j] != 0 && (selection.limits[j] == 0 || held_target_[joint] != limit_target[joint])) {
-      release_limits();
-      break;
-    }
+void Hierarchy::hold_limits(const Stack& stack, const Selection& selection) {
+  if (!limits_.within(selection)) {
+    limits_.release();
+    shared_ = 0;
   }
-  for (std::size_t j = 0; j < held_.size(); ++j) {
-    if (selection.limits[j] != 0 && held_[j] == 0) {
-      const auto joint = static_cast<Eigen::Index>(j);
-      hold_limit(stack, joint, limit_target[joint]);
+  for (Eigen::Index joint = 0; joint < stack.size(); ++joint) {
+    if (selection.limits[static_cast<std::size_t>(joint)] != 0 && !limits_.holds(joint)) {
+      close_in_shared_levels(limits_.hold(stack, joint));
     }
   }
 }
 
-void Hierarchy::release_limits() {
-  std::fill(held_.begin(), held_.end(), 0);
-  held_rows_.reset();
-  held_open_.reset();
-  held_y_.setZero();
-}
-
-/// One more limit row, in the directions that those before it leave: no damping, the rows are independent.
-void Hierarchy::hold_limit(const Stack& stack, Eigen::Index joint, double target) {
-  held_[static_cast<std::size_t>(joint)] = 1;
-  held_target_[joint] = target;
-  limit_row_.set_rows(0, stack.motion.row(joint));
-  held_rows_.project(limit_row_, task_);
-  multiply_rows(task_, gram_);
-  const double norm = std::sqrt(gram_(0, 0));
-  scale(task_, 1.0 / norm);
-  const double missing = target - stack.motion.row(joint).dot(held_y_.head(stack.size()));
-  for (Eigen::Index i = 0; i < stack.size(); ++i) {
-    held_y_[i] += missing / norm * task_(0, i);
-  }
-  held_rows_.close(task_);
-  if (needs_basis_) {
-    held_open_.close(held_open_.project(task_, gram_));
+/// Down to the first level that the direction moves and that is damped: below it more has changed.
+void Hierarchy::close_in_shared_levels(const Vector& direction) {
+  step_ = direction;
+  for (std::size_t i = 0; i < shared_; ++i) {
+    if (empty(i)) {
+      continue;
+    }
+    if (!levels_[i].close(step_.data(), options_.damped_below)) {
+      shared_ = i + 1;
+    }
   }
 }
 
 /// The selected tasks of a level and their metric B.
-void Hierarchy::prepare(const Stack& stack, const Selection& selection, Level& level) {
-  level.given.gather(stack, selection, level.first);
-  level.ready = true;
-  level.factorised = false;
-  if (level.given.is_motion() && stack.motion_is_y) {
+void Hierarchy::prepare(const Stack& stack, const Selection& selection, std::size_t first,
+                        HierarchyLevel& level) {
+  level.gather(stack, selection, first);
+  if (level.given().is_motion() && stack.motion_is_y) {
     return;  // B = (1 + eps^2) I
   }
-  if (level.given.is_motion()) {
+  if (level.given().is_motion()) {
     motion_.resize_for_rows(stack.size(), stack.size());
     motion_.set_rows(0, stack.motion);
   }
-  multiply_rows(rows(level), level.metric);
-  for (Eigen::Index i = 0; i < level.metric.rows(); ++i) {
-    level.metric(i, i) += options_.epsilon * options_.epsilon;
+  level.set_metric(rows(level), options_.epsilon);
+}
+
+const PanelMatrix& Hierarchy::rows(const HierarchyLevel& level) const {
+  return level.given().is_motion() ? motion_ : level.given().a();
+}
+
+/// A level that takes from those below, which are known too, just what it took in the selection before.
+void Hierarchy::add_known(HierarchyLevel& level, Solution& solution) {
+  find_residual(level, false);
+  if (level.clear()) {
+    add_clear(level, false);
+  } else {
+    minimise_damped(level.decompose(eigen_), level.projected());
+    solution.singular = true;
   }
 }
 
-const PanelMatrix& Hierarchy::rows(const Level& level) const {
-  return level.given.is_motion() ? motion_ : level.given.a();
-}
-
-void Hierarchy::add_level(const Stack& stack, Level& level, bool last, Solution& solution) {
-  const int m = level.given.rows();
+/// True when what is closed below the level is known as rows. `shared`: A N is known from the selection before.
+bool Hierarchy::add_level(const Stack& stack, HierarchyLevel& level, bool shared, bool last,
+                          Solution& solution) {
+  const bool plain = level.given().is_motion() && stack.motion_is_y;
+  if (shared && level.clear()) {  // the last level
+    find_residual(level, plain);
+    add_clear(level, false);
+    return true;
+  }
+  shared ? restore_closed(level) : level.start(closed_.size());
+  const int m = level.given().rows();
   // a level that asks for all the freedom there is always loses some to the levels above it
   const bool partial = m < stack.size();
   const int open = by_basis_ ? open_.size() : closed_.open();
   const bool crowded = open < m;
   solution.singular = solution.singular || (partial && crowded);
   if (open == 0) {
-    return;
+    return false;
   }
-  const bool plain = level.given.is_motion() && stack.motion_is_y;
-  const Eigen::Index padded = PanelMatrix::padded(m);
-  residual_.head(padded) = level.given.b().head(padded);
+  find_residual(level, plain);
+  if (!by_basis_ && plain && plain_is_undamped() && (last || !closed_.shared())) {
+    add_rest();
+    return false;
+  }
+  // the spectrum of few rows costs little even if some of them have no direction left
+  const bool few = partial && (!crowded || m <= PanelMatrix::height);
+  if (!by_basis_ && (closed_.shared() || !few)) {
+    open_.reset(closed_);  // what follows needs a basis of what is open
+    by_basis_ = true;
+    shared = false;
+  }
+  if (!by_basis_ || (partial && !crowded)) {
+    if (!shared) {
+      project(level);
+      if (!crowded && level.factorise(options_.damped_below)) {
+        add_clear(level, !last);
+        return !by_basis_;
+      }
+    }
+    if (!by_basis_ || m < open) {
+      add_by_rows(level, last);
+      solution.singular = true;
+      return !by_basis_;
+    }
+  }
+  const bool clear = add_by_columns(level, plain, last);
+  solution.singular = solution.singular || (partial && !clear);
+  return false;
+}
+
+/// b - A y
+void Hierarchy::find_residual(const HierarchyLevel& level, bool plain) {
+  const Eigen::Index padded = PanelMatrix::padded(level.given().rows());
+  residual_.head(padded) = level.given().b().head(padded);
   if (plain) {
     residual_.head(padded) -= y_;
   } else {
     subtract_product(rows(level), y_.data(), residual_.data());
   }
-  if (!by_basis_ && plain && plain_is_undamped() && (last || !closed_.shared())) {
-    add_rest();
-    return;
+}
+
+/// What is closed above a level of which A N is known, as rows.
+void Hierarchy::restore_closed(const HierarchyLevel& level) {
+  closed_.keep(level.closed_before());
+  for (int i = 0; i < level.closed_since(); ++i) {
+    closed_.close(level.closed_direction(i));
   }
-  // the spectrum of few rows costs little even if some of them have no direction left
-  const bool by_rows = partial && (!crowded || m <= PanelMatrix::height);
-  if (!by_basis_ && (closed_.shared() || !by_rows)) {
-    open_.reset(closed_);  // what follows needs a basis of what is open
-    by_basis_ = true;
-  }
-  project(plain, level);
-  if (partial && !crowded && add_undamped(level, last)) {
-    return;
-  }
-  whiten(plain, level);
-  const bool clear = add_whitened(last);
-  solution.singular = solution.singular || (partial && !clear);
 }
 
 /// A task on y itself, to which each direction is left whole or by its own share.
@@ -218,83 +272,72 @@ bool Hierarchy::plain_is_undamped() const {
   return 1.0 / (1.0 + options_.epsilon * options_.epsilon) > options_.damped_below;
 }
 
-/// A task in the directions that are open, A N or A Z.
-void Hierarchy::project(bool plain, const Level& level) {
-  if (!by_basis_) {
-    closed_.project(rows(level), task_);
+/// A task in the directions that are open, A N or A Z, with its Gram matrix.
+void Hierarchy::project(HierarchyLevel& level) {
+  if (by_basis_) {
+    level.set_projected(open_.project(rows(level), level.workspace()));
+  } else {
+    level.project(rows(level), closed_);
+  }
+}
+
+/// The undamped law, in which no metric matters.
+void Hierarchy::add_clear(const HierarchyLevel& level, bool to_be_closed) {
+  level.factor().solve(residual_.data());
+  multiply_transposed(level.projected(), residual_.data(), step_.data());
+  move();
+  if (!to_be_closed) {
     return;
   }
-  const PanelMatrix& task = plain ? open_.columns() : open_.project(rows(level), task_);
-  if (&task != &task_) {
-    task_.assign(task);
-  }
-}
-
-/// y <- y + N^(1/2) step
-void Hierarchy::move() {
   if (by_basis_) {
-    add_product(open_.columns(), step_.data(), y_.data());
+    open_.close(level.projected());
   } else {
-    y_.head(task_.cols()) += step_.head(task_.cols());
+    task_.assign(level.projected());
+    level.factor().whiten(task_);  // its rows are orthonormal then
+    closed_.close(task_);
   }
 }
 
-/// The undamped law, in which no metric matters. False, and nothing is done, unless every rho > rho_0.
-bool Hierarchy::add_undamped(const Level& level, bool last) {
-  multiply_rows(task_, gram_);
-  subtract(gram_, options_.damped_below, level.metric, excess_);
-  if (!clear_.factorise(excess_) || !factor_.factorise(gram_)) {
+/// By the spectrum of G, of which some rho <= rho_0.
+void Hierarchy::add_by_rows(HierarchyLevel& level, bool last) {
+  RowSpectrum& spectrum = level.decompose(eigen_);
+  minimise_damped(spectrum, level.projected());
+  if (!last) {
+    close_shares(spectrum);
+  }
+}
+
+/// Where there are as many rows as open directions or more. True when every rho > rho_0.
+bool Hierarchy::add_by_columns(HierarchyLevel& level, bool plain, bool last) {
+  whiten_columns(level, plain);
+  multiply_columns(task_, gram_);
+  if (!clear_.factorise(gram_, -options_.damped_below)) {
+    spectrum_.compute(task_, gram_, eigen_);
+    minimise_damped(spectrum_, task_);
+    if (!last) {
+      close_shares(spectrum_);
+    }
     return false;
   }
-  if (by_basis_) {
-    factor_.solve(residual_.data());
-  } else {
-    factor_.whiten(residual_.data());
-    factor_.whiten(task_);  // its rows are orthonormal then
-  }
-  multiply_transposed(task_, residual_.data(), step_.data());
-  move();
+  minimise();
   if (!last) {
-    by_basis_ ? open_.close(task_) : closed_.close(task_);
+    open_.close_all();
   }
   return true;
 }
 
-/// 1 / g(rho)
-double Hierarchy::damped(double rho) const {
-  const double deficit = std::max(0.0, 1.0 - rho / options_.damped_below);
-  return rho + options_.damped_below * deficit * deficit;
-}
-
-/// Turns A Z and what is missing into the metric B^-1; B = (1 + eps^2) I if `plain`.
-void Hierarchy::whiten(bool plain, Level& level) {
+/// L^-1 A Z and what is missing in the metric B^-1; B = (1 + eps^2) I if `plain`.
+void Hierarchy::whiten_columns(HierarchyLevel& level, bool plain) {
   if (plain) {
     const double weight = 1.0 / std::sqrt(1.0 + options_.epsilon * options_.epsilon);
+    task_.assign(open_.columns());
     scale(task_, weight);
     residual_ *= weight;
     return;
   }
-  if (!level.factorised) {
-    level.factor.factorise(level.metric);
-    level.factorised = true;
-  }
-  level.factor.whiten(task_);
-  level.factor.whiten(residual_.data());
-}
-
-/// By the spectrum of G where some rho <= rho_0 (false then), or where there are more rows than directions are open.
-bool Hierarchy::add_whitened(bool last) {
-  const bool by_rows = task_.rows() < task_.cols();
-  by_rows ? multiply_rows(task_, gram_) : multiply_columns(task_, gram_);
-  const bool clear = !by_rows && clear_.factorise(gram_, -options_.damped_below);
-  clear ? minimise() : minimise_damped();
-  move();
-  if (!last && clear) {
-    open_.close_all();
-  } else if (!last) {
-    by_basis_ ? open_.close(spectrum_, shares_) : closed_.close(spectrum_, shares_);
-  }
-  return clear;
+  task_.assign(open_.project(rows(level), level.workspace()));
+  level.metric().whiten(task_);
+  level.metric().whiten(residual_.data());
 }
 
 /// Least squares in all open directions.
@@ -303,19 +346,38 @@ void Hierarchy::minimise() {
   step_.setZero();
   multiply_transposed(task_, residual_.data(), step_.data());
   factor_.solve(step_.data());
+  move();
 }
 
 /// Each direction by its own gain, with its share of what is to be closed.
-void Hierarchy::minimise_damped() {
-  spectrum_.compute(task_, gram_);
-  spectrum_.components(task_, residual_, weights_);
-  auto step = step_.head(task_.cols());
-  step.setZero();
-  for (int i = 0; i < spectrum_.size(); ++i) {
-    const double rho = spectrum_.squared(i);
-    step += weights_[i] / damped(rho) * Eigen::Map<const Vector>(spectrum_.direction(i), task_.cols());
+void Hierarchy::minimise_damped(RowSpectrum& spectrum, const PanelMatrix& rows) {
+  spectrum.components(rows, residual_, weights_);
+  for (int i = 0; i < spectrum.size(); ++i) {
+    const double rho = spectrum.squared(i);
+    weights_[i] /= damped(rho);
     shares_[i] = 1.0 - std::sqrt(1.0 - smooth_step(rho / options_.locked_above));
   }
+  multiply_transposed(spectrum.directions(), weights_.data(), step_.data());
+  move();
+}
+
+void Hierarchy::close_shares(const RowSpectrum& spectrum) {
+  by_basis_ ? open_.close(spectrum, shares_) : closed_.close(spectrum, shares_);
+}
+
+/// y <- y + N^(1/2) step
+void Hierarchy::move() {
+  if (by_basis_) {
+    add_product(open_.columns(), step_.data(), y_.data());
+  } else {
+    y_.head(closed_.rows().cols()) += step_.head(closed_.rows().cols());
+  }
+}
+
+/// 1 / g(rho)
+double Hierarchy::damped(double rho) const {
+  const double deficit = std::max(0.0, 1.0 - rho / options_.damped_below);
+  return rho + options_.damped_below * deficit * deficit;
 }
 
 }  // namespace tope

@@ -34,7 +34,7 @@ void OpenBasis::reset(const ClosedRows& closed) {
   rows_.resize(0, size());
   for (int i = 0; i < closed.size(); ++i) {
     if (closed.share(i) >= 1.0) {
-      rows_.append_row(row_of(closed.rows(), i));
+      rows_.append_row(closed.rows(), i);
     }
   }
   close_rows();
@@ -145,9 +145,9 @@ void OpenBasis::close(const RowSpectrum& spectrum, const Vector& shares) {
   rows_.resize(0, size());
   for (int i = 0; i < spectrum.size(); ++i) {
     if (shares[i] >= 1.0) {
-      rows_.append_row(spectrum.direction(i));
+      rows_.append_row(spectrum.directions(), i);
     } else if (shares[i] > ClosedRows::nothing) {
-      turn_all(spectrum.direction(i), shares[i] / spectrum.squared(i));
+      turn_all(row_of(spectrum.directions(), i), shares[i] / spectrum.squared(i));
     }
   }
   close_rows();  // v_i are orthogonal: the shares taken before leave these as they are

@@ -6,6 +6,33 @@
 namespace tope {
 namespace {
 
+/// Copies `run` numbers from the beginning of each column, which are `stride` apart, into a panel.
+template <int run>
+void copy_rows(const double* from, Eigen::Index stride, Eigen::Index cols, double* panel) {
+  for (Eigen::Index j = 0; j < cols; ++j) {
+    for (int i = 0; i < run; ++i) {
+      panel[height * j + i] = from[stride * j + i];
+    }
+  }
+}
+
+/// The same for a count that the compiler does not know.
+void copy_rows(Eigen::Index run, const double* from, Eigen::Index stride, Eigen::Index cols, double* panel) {
+  switch (run) {
+    case 1:
+      copy_rows<1>(from, stride, cols, panel);
+      break;
+    case 2:
+      copy_rows<2>(from, stride, cols, panel);
+      break;
+    case 3:
+      copy_rows<3>(from, stride, cols, panel);
+      break;
+    default:
+      copy_rows<4>(from, stride, cols, panel);
+  }
+}
+
 /// One panel times x.
 Column product(const double* panel, Eigen::Index cols, const double* x) {
   Column even = Column::Zero();  // two sums, as each waits for its last term
@@ -21,20 +48,44 @@ Column product(const double* panel, Eigen::Index cols, const double* x) {
   return even + odd;
 }
 
-/// One panel times the first columns of another's transpose.
-std::array<Column, height> product_by_transposed(const double* left, const double* right, Eigen::Index cols) {
-  Column first = Column::Zero();
-  Column second = Column::Zero();
-  Column third = Column::Zero();
-  Column fourth = Column::Zero();
+/// The first `count` columns of one panel times another's transpose.
+template <int count>
+void multiply_by_transposed(const double* left, const double* right, Eigen::Index cols, double* result) {
+  std::array<Column, count> sums;
+  sums.fill(Column::Zero());
   for (Eigen::Index j = 0; j < cols; ++j) {
     const Column now = column(left, j);
-    first += right[height * j] * now;
-    second += right[height * j + 1] * now;
-    third += right[height * j + 2] * now;
-    fourth += right[height * j + 3] * now;
+    for (int i = 0; i < count; ++i) {
+      sums[static_cast<std::size_t>(i)] += right[height * j + i] * now;
+    }
   }
-  return {first, second, third, fourth};
+  for (int i = 0; i < count; ++i) {
+    column(result, i) = sums[static_cast<std::size_t>(i)];
+  }
+}
+
+/// The same for a count that the compiler does not know.
+void multiply_by_transposed(Eigen::Index count, const double* left, const double* right, Eigen::Index cols,
+                            double* result) {
+  switch (count) {
+    case 1:
+      multiply_by_transposed<1>(left, right, cols, result);
+      break;
+    case 2:
+      multiply_by_transposed<2>(left, right, cols, result);
+      break;
+    case 3:
+      multiply_by_transposed<3>(left, right, cols, result);
+      break;
+    default:
+      multiply_by_transposed<4>(left, right, cols, result);
+  }
+}
+
+/// Block q of a panel of A B^T.
+void multiply_by_transposed(const double* left, const PanelMatrix& b, Eigen::Index q, double* panel) {
+  multiply_by_transposed(std::min(height, b.rows() - height * q), left, b.panel(q), b.cols(),
+                         panel + height * height * q);
 }
 
 /// out (cols) += sign times the panels of M from `first` on, transposed, times w.
@@ -51,32 +102,67 @@ void add_transposed_panels(const PanelMatrix& m, Eigen::Index first, double sign
   }
 }
 
-/// Writes block q of a panel that has `cols` columns.
-void store(const std::array<Column, height>& block, Eigen::Index q, double* panel, Eigen::Index cols) {
-  const Eigen::Index count = std::min(height, cols - height * q);
-  for (Eigen::Index j = 0; j < count; ++j) {
-    column(panel, height * q + j) = block[static_cast<std::size_t>(j)];
+/// Columns of a result (+)= sign times `depth` columns of A's panel times rows of B's.
+template <int depth, int sign, bool fresh>
+void add_block(const double* left, const double* right, Eigen::Index cols, double* result) {
+  std::array<Column, depth> factors;
+  for (int i = 0; i < depth; ++i) {
+    factors[static_cast<std::size_t>(i)] = column(left, i);
+  }
+  for (Eigen::Index j = 0; j < cols; ++j) {
+    Column sum = fresh ? Column::Zero().eval() : column(result, j).eval();
+    for (int i = 0; i < depth; ++i) {
+      sum += sign * right[height * j + i] * factors[static_cast<std::size_t>(i)];
+    }
+    column(result, j) = sum;
   }
 }
 
-/// Columns of a panel += `sign` times a panel of A times B.
-template <int sign>
-void add_product(const PanelMatrix& a, Eigen::Index panel, const PanelMatrix& b, double* result) {
-  const double* left = a.panel(panel);
-  for (Eigen::Index k = 0; k < a.cols(); k += height) {
-    const double* right = b.panel(k / height);
-    const Eigen::Index depth = std::min(height, a.cols() - k);
-    for (Eigen::Index j = 0; j < b.cols(); ++j) {
-      Column sum = column(result, j);
-      for (Eigen::Index i = 0; i < depth; ++i) {
-        sum += sign * right[height * j + i] * column(left, k + i);
-      }
-      column(result, j) = sum;
-    }
+/// The same for a depth from 0 to 4 that the compiler does not know.
+template <int sign, bool fresh>
+void add_block(Eigen::Index depth, const double* left, const double* right, Eigen::Index cols,
+               double* result) {
+  switch (depth) {
+    case 0:
+      add_block<0, sign, fresh>(left, right, cols, result);
+      break;
+    case 1:
+      add_block<1, sign, fresh>(left, right, cols, result);
+      break;
+    case 2:
+      add_block<2, sign, fresh>(left, right, cols, result);
+      break;
+    case 3:
+      add_block<3, sign, fresh>(left, right, cols, result);
+      break;
+    default:
+      add_block<4, sign, fresh>(left, right, cols, result);
   }
 }
 
 }  // namespace
+
+void PanelMatrix::set_rows(Eigen::Index first, const Matrix& m) {
+  Eigen::Index run = 0;  // rows within one panel
+  for (Eigen::Index i = 0; i < m.rows(); i += run) {
+    run = std::min(height - (first + i) % height, m.rows() - i);
+    copy_rows(run, m.data() + i, m.rows(), m.cols(), &(*this)(first + i, 0));
+  }
+}
+
+void PanelMatrix::append_rows(const PanelMatrix& other) {
+  const Eigen::Index first = rows_;
+  const Eigen::Index panels_before = panels();
+  rows_ += other.rows_;
+  for (Eigen::Index p = panels_before; p < panels(); ++p) {
+    Eigen::Map<Vector>(panel(p), height * cols_).setZero();
+  }
+  Eigen::Index run = 0;  // rows within one panel of both
+  for (Eigen::Index i = 0; i < other.rows_; i += run) {
+    run = std::min({height - (first + i) % height, height - i % height, other.rows_ - i});
+    copy_rows(run, other.panel(i / height) + i % height, height, cols_, &(*this)(first + i, 0));
+  }
+}
 
 void multiply(const PanelMatrix& m, const double* x, double* out) {
   const Eigen::Index panels = m.panels();
@@ -119,15 +205,22 @@ void subtract_transposed_product(const PanelMatrix& m, const double* w, double* 
 void multiply(const PanelMatrix& a, const PanelMatrix& b, PanelMatrix& out) {
   out.resize(a.rows(), b.cols());
   for (Eigen::Index p = 0; p < a.panels(); ++p) {
-    Eigen::Map<Vector>(out.panel(p), height * b.cols()).setZero();
-    add_product<1>(a, p, b, out.panel(p));
+    double* result = out.panel(p);
+    add_block<1, true>(std::min(height, a.cols()), a.panel(p), b.panel(0), b.cols(), result);
+    for (Eigen::Index k = height; k < a.cols(); k += height) {
+      add_block<1, false>(std::min(height, a.cols() - k), a.panel(p) + height * k, b.panel(k / height),
+                          b.cols(), result);
+    }
   }
 }
 
 void subtract_product(const PanelMatrix& a, const PanelMatrix& b, const PanelMatrix& c, PanelMatrix& out) {
   out.assign(a);
   for (Eigen::Index p = 0; p < a.panels(); ++p) {
-    add_product<-1>(b, p, c, out.panel(p));
+    for (Eigen::Index k = 0; k < b.cols(); k += height) {
+      add_block<-1, false>(std::min(height, b.cols() - k), b.panel(p) + height * k, c.panel(k / height),
+                           c.cols(), out.panel(p));
+    }
   }
 }
 
@@ -135,7 +228,7 @@ void multiply_by_transposed(const PanelMatrix& a, const PanelMatrix& b, PanelMat
   out.resize(a.rows(), b.rows());
   for (Eigen::Index p = 0; p < a.panels(); ++p) {
     for (Eigen::Index q = 0; q < b.panels(); ++q) {
-      store(product_by_transposed(a.panel(p), b.panel(q), a.cols()), q, out.panel(p), b.rows());
+      multiply_by_transposed(a.panel(p), b, q, out.panel(p));
     }
   }
 }
@@ -144,7 +237,7 @@ void multiply_rows(const PanelMatrix& m, PanelMatrix& out) {
   out.resize(m.rows(), m.rows());
   for (Eigen::Index p = 0; p < m.panels(); ++p) {
     for (Eigen::Index q = 0; q <= p; ++q) {
-      store(product_by_transposed(m.panel(p), m.panel(q), m.cols()), q, out.panel(p), m.rows());
+      multiply_by_transposed(m.panel(p), m, q, out.panel(p));
     }
   }
 }
@@ -160,6 +253,14 @@ void multiply_columns(const PanelMatrix& m, PanelMatrix& out) {
         sum += column(panel, i).cwiseProduct(column(panel, j));
       }
       out(i, j) = sum.sum();
+    }
+  }
+}
+
+void make_symmetric(PanelMatrix& m) {
+  for (Eigen::Index j = 0; j < m.cols(); ++j) {
+    for (Eigen::Index i = 0; i < j; ++i) {
+      m(i, j) = m(j, i);
     }
   }
 }
@@ -181,6 +282,18 @@ void subtract(const PanelMatrix& a, double scale, const PanelMatrix& b, PanelMat
     double* result = out.panel(p);
     for (Eigen::Index j = 0; j < a.cols(); ++j) {
       column(result, j) = column(left, j) - scale * column(right, j);
+    }
+  }
+}
+
+void subtract_outer(PanelMatrix& m, const double* w, const double* v) {
+  const Eigen::Index panels = m.panels();
+  const Eigen::Index cols = m.cols();
+  for (Eigen::Index p = 0; p < panels; ++p) {
+    double* panel = m.panel(p);
+    const Column weights = column(w, p);
+    for (Eigen::Index j = 0; j < cols; ++j) {
+      column(panel, j) -= v[j] * weights;
     }
   }
 }

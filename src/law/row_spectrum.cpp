@@ -4,44 +4,57 @@
 
 namespace tope {
 
-RowSpectrum::RowSpectrum(int n)
-    : eigen_(n),
-      squared_(n),
-      left_(Matrix::Zero(PanelMatrix::padded(n), n)),
-      directions_(left_),
-      projected_(Vector::Zero(left_.rows())) {}
+RowSpectrum::RowSpectrum(int max_size, int n)
+    : squared_(max_size),
+      left_(max_size, max_size),
+      directions_(max_size, n),
+      projected_(Vector::Zero(PanelMatrix::padded(n))) {}
 
-void RowSpectrum::compute(const PanelMatrix& k, const PanelMatrix& gram) {
+void RowSpectrum::compute(const PanelMatrix& k, const PanelMatrix& gram, SymmetricEigen& eigen) {
   by_rows_ = k.rows() < k.cols();
-  size_ = static_cast<int>(gram.rows());
-  if (size_ == 0) {
+  if (by_rows_) {
+    decompose(gram, eigen, left_);
+    multiply(left_, k, directions_);
     return;
   }
-  const SymmetricEigen::Solver& eigen = eigen_.compute(gram);
-  squared_.head(size_) = eigen.eigenvalues().cwiseMax(0.0);
-  for (int i = 0; i < size_; ++i) {
-    if (by_rows_) {
-      left_.col(i).head(size_) = eigen.eigenvectors().col(i);
-      left_.col(i).tail(left_.rows() - size_).setZero();
-      multiply_transposed(k, left_.col(i).data(), directions_.col(i).data());
-    } else {
-      directions_.col(i).head(size_) = std::sqrt(squared_[i]) * eigen.eigenvectors().col(i);
+  decompose(gram, eigen, directions_);
+  for (Eigen::Index i = 0; i < directions_.rows(); ++i) {
+    const double sigma = std::sqrt(squared_[i]);
+    for (Eigen::Index j = 0; j < directions_.cols(); ++j) {
+      directions_(i, j) *= sigma;
     }
   }
 }
 
+void RowSpectrum::compute(const Cholesky& metric, const PanelMatrix& a, const PanelMatrix& gram,
+                          SymmetricEigen& eigen) {
+  by_rows_ = true;
+  decompose(gram, eigen, left_);
+  metric.whiten_across(left_);
+  multiply(left_, a, directions_);
+}
+
+/// Values, and vectors as rows.
+void RowSpectrum::decompose(const PanelMatrix& gram, SymmetricEigen& eigen, PanelMatrix& vectors) {
+  vectors.resize_for_rows(gram.rows(), gram.rows());
+  if (gram.rows() == 0) {
+    return;
+  }
+  const SymmetricEigen::Solver& solver = eigen.compute(gram);
+  squared_.head(gram.rows()) = solver.eigenvalues().cwiseMax(0.0);
+  vectors.set_rows(0, solver.eigenvectors().transpose());
+}
+
 void RowSpectrum::components(const PanelMatrix& k, const Vector& r, Vector& out) {
   if (by_rows_) {
-    for (int i = 0; i < size_; ++i) {
-      out[i] = left_.col(i).head(size_).dot(r.head(size_));
-    }
+    multiply(left_, r.data(), out.data());
     return;
   }
   multiply_transposed(k, r.data(), projected_.data());
-  for (int i = 0; i < size_; ++i) {
+  multiply(directions_, projected_.data(), out.data());
+  for (int i = 0; i < size(); ++i) {
     // u = K v / sigma: where sigma vanishes the direction does, and what multiplies it does not matter
-    out[i] =
-        squared_[i] > 0.0 ? directions_.col(i).head(size_).dot(projected_.head(size_)) / squared_[i] : 0.0;
+    out[i] = squared_[i] > 0.0 ? out[i] / squared_[i] : 0.0;
   }
 }
 

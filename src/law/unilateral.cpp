@@ -27,7 +27,8 @@ Unilateral::Unilateral(const Stack& stack, const Options& options)
       limit_solver_(bounded_rows(stack), bounded_rows(stack)),
       solver_(stack.size(), bounded_rows(stack)),
       clear_(stack.size()),
-      spectrum_(stack.size()),
+      eigen_(stack.size()),
+      spectrum_(stack.size(), stack.size()),
       open_(stack.size(), bounded_rows(stack)),
       task_(workspace_rows(stack), stack.size()),
       shares_(stack.size()),
@@ -182,7 +183,7 @@ bool Unilateral::all_directions_clear(const PanelMatrix& task) {
 
 /// Takes each direction out of M as far as its sigma says.
 void Unilateral::lock_gradually(const PanelMatrix& task) {
-  spectrum_.compute(task, solver_.gram());
+  spectrum_.compute(task, solver_.gram(), eigen_);
   for (int i = 0; i < spectrum_.size(); ++i) {
     shares_[i] = quintic_step(std::sqrt(spectrum_.squared(i)) / options_.lock);
   }

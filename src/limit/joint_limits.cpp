@@ -99,18 +99,16 @@ void JointLimits::update(const VectorArg& q) {
     motion_lower_[j] = -std::clamp(behind, -0.5 * v_max, v_max);
     upper_at_rest_[j] = std::max(0.0, motion_upper_[j]);
     lower_at_rest_[j] = std::max(0.0, -motion_lower_[j]);
-    note_distances(j, to_upper, to_lower);
+    note_near(j, ahead, behind, distance);
   }
 }
 
-/// What both orders keep of a joint's distances to its limits.
-void JointLimits::note_distances(int joint, double to_upper, double to_lower) {
+/// What both orders keep of a joint's limits: bounds on the speed that they set at first order, and the lesser distance.
+void JointLimits::note_near(int joint, double ahead, double behind, double distance) {
   const auto k = static_cast<std::size_t>(joint);
-  const double ahead = gain_[joint] * (to_upper - options_.margin) + upper_receding(joint);
-  const double behind = gain_[joint] * (to_lower - options_.margin) + lower_receding(joint);
   near_upper_[k] = ahead < velocity_limit_[joint] ? 1 : 0;
   near_lower_[k] = behind < velocity_limit_[joint] ? 1 : 0;
-  const double excess = -std::min(to_upper, to_lower);
+  const double excess = -distance;
   if (excess > furthest_beyond_) {
     furthest_beyond_ = excess;
     beyond_ = joint;
@@ -178,7 +176,8 @@ void JointLimits::update_second_order(const VectorArg& q, const VectorArg& v) {
     motion_lower_[j] = -allowed_acceleration(behind, lower_away, -v[j], 0.0);
     upper_at_rest_[j] = options_.servo_gain * std::max(0.0, ahead.speed);
     lower_at_rest_[j] = options_.servo_gain * std::max(0.0, behind.speed);
-    note_distances(j, to_upper, to_lower);
+    note_near(j, gain_[j] * (to_upper - options_.margin) + upper_away,
+              gain_[j] * (to_lower - options_.margin) + lower_away, std::min(to_upper, to_lower));
   }
   engagement_slack_ = options_.servo_gain * gain_.cwiseProduct(buffer_);
 }

@@ -81,8 +81,9 @@ BOOST_AUTO_TEST_CASE(take_shares_and_leave_a_basis) {
       closed.project(PanelMatrix(random.matrix(3, n)), projected);
       PanelMatrix gram(3, 3);
       multiply_rows(projected, gram);
-      RowSpectrum spectrum(n);
-      spectrum.compute(projected, gram);
+      RowSpectrum spectrum(n, n);
+      SymmetricEigen eigen(n);
+      spectrum.compute(projected, gram, eigen);
       const Vector shares = (Vector(3) << random.uniform(0.0, 1.0), 1.0, 0.0).finished();
       closed.close(spectrum, shares);
       BOOST_TEST(closed.size() == first.rows() + 2);  // nothing is taken of the third
@@ -91,7 +92,7 @@ BOOST_AUTO_TEST_CASE(take_shares_and_leave_a_basis) {
 
       Matrix half = null_space(first);  // N = half half^T
       for (int i = 0; i < 2; ++i) {
-        const Vector u = Eigen::Map<const Vector>(spectrum.direction(i), n) / std::sqrt(spectrum.squared(i));
+        const Vector u = dense(spectrum.directions()).row(i).transpose() / std::sqrt(spectrum.squared(i));
         half -= shares[i] * u * u.transpose();
       }
       const Matrix q = dense(closed.rows());
@@ -100,6 +101,13 @@ BOOST_AUTO_TEST_CASE(take_shares_and_leave_a_basis) {
         by_rows -= closed.share(i) * q.row(i).transpose() * q.row(i);
       }
       BOOST_TEST((by_rows - half).norm() <= 1e-11);
+      const int rows = closed.size();
+      closed.close(random.vector(n).data());
+      BOOST_TEST(closed.share(rows) == 1.0);
+      BOOST_TEST(closed.open() == n - first.rows() - 2);
+      closed.keep(rows);
+      BOOST_TEST((dense(closed.rows()) - q).norm() == 0.0);
+      BOOST_TEST(closed.open() == n - first.rows() - 1);
       OpenBasis open(n);
       open.reset(closed);
       BOOST_TEST(open.size() == closed.open());

@@ -178,6 +178,67 @@ BOOST_AUTO_TEST_CASE(is_continuous_through_singularities) {
   }
 }
 
+/// A stack of which some joints move no row of some tasks; half of them as velocity mode has it, with a posture below.
+Stack sparse_stack(Random& random) {
+  Stack stack = random_stack(random, {.n = random.integer(4, 14),
+                                      .levels = random.integer(1, 3),
+                                      .task_transitions = random.integer(0, 1),
+                                      .complete_limits = 0.1,
+                                      .weak = 0.2});
+  for (TaskRows& task : stack.tasks) {
+    for (int j = 0; j < stack.size(); ++j) {
+      if (random.chance(0.3)) {
+        task.a.col(j).setZero();
+      }
+    }
+  }
+  if (random.chance(0.5)) {
+    stack.motion.setIdentity();
+    stack.motion_is_y = true;
+    stack.tasks.push_back({.level = stack.tasks.back().level + 1,
+                           .a = stack.motion,
+                           .b = random.vector(stack.size()),
+                           .is_motion = true});
+  }
+  return stack;
+}
+
+BOOST_AUTO_TEST_CASE(what_a_selection_leaves_to_the_next_changes_nothing) {
+  int singular = 0;
+  int all = 0;
+  double largest = 0.0;
+  for (int seed = 0; seed < 1000; ++seed) {
+    BOOST_TEST_CONTEXT("seed " << seed) {
+      Random random(seed);
+      const Stack stack = sparse_stack(random);
+      Selection selection = select_all_tasks(stack);
+      Hierarchy law(stack, defaults);
+      law.begin();
+      Solution solution(stack.size());
+      for (int step = 0; step < 8; ++step) {
+        law.solve(stack, selection, solution);
+        const Vector fresh = solve(stack, selection);
+        const double error = deviation(solution.y, fresh) / (1.0 + fresh.norm());
+        BOOST_TEST(error <= 1e-9);
+        largest = std::max(largest, error);
+        singular += solution.singular ? 1 : 0;
+        ++all;
+        if (random.chance(0.1)) {  // what follows shares nothing with it
+          char& task = selection.tasks[static_cast<std::size_t>(
+              random.integer(0, static_cast<int>(selection.tasks.size()) - 1))];
+          task = task != 0 ? 0 : 1;
+        }
+        for (int i = random.integer(0, 2); i > 0; --i) {
+          selection.limits[static_cast<std::size_t>(random.integer(0, stack.size() - 1))] = 1;
+        }
+      }
+    }
+  }
+  BOOST_TEST(singular > all / 10);
+  BOOST_TEST(singular < 9 * all / 10);
+  BOOST_TEST_MESSAGE(singular << " of " << all << " singular, largest deviation " << largest);
+}
+
 BOOST_AUTO_TEST_CASE(refuses_bad_options) {
   const Stack stack(2);
   for (const Hierarchy::Options& bad :

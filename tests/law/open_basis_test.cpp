@@ -53,8 +53,9 @@ BOOST_AUTO_TEST_CASE(closes_rows_whole_and_by_shares) {
       PanelMatrix gram(n, n);
       projected.rows() < projected.cols() ? multiply_rows(projected, gram)
                                           : multiply_columns(projected, gram);
-      RowSpectrum spectrum(n);
-      spectrum.compute(projected, gram);
+      RowSpectrum spectrum(n, n);
+      SymmetricEigen eigen(n);
+      spectrum.compute(projected, gram, eigen);
       const Vector shares = (Vector(3) << random.uniform(0.0, 1.0), 1.0, random.uniform(0.0, 1.0)).finished();
       const Matrix expected = expected_projector(z, second, shares);
       open.close(spectrum, shares);

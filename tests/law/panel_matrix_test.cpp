@@ -84,6 +84,15 @@ void check(Random& random, int rows, int cols) {
   difference.assign(panels);
   BOOST_TEST((dense(difference) - m).norm() == 0.0);
 
+  const Vector down = random.vector(rows);
+  subtract_outer(difference, padded(down).data(), x.data());
+  BOOST_TEST((dense(difference) - m + down * x.transpose()).norm() <= close * (1.0 + x.norm() * down.norm()));
+  out.setZero();
+  multiply(difference, x.data(), out.data());
+  check_rest_is_zero(out, rows);
+  make_symmetric(gram);
+  BOOST_TEST((dense(gram) - m.transpose() * m).norm() <= close * (1.0 + m.norm()));
+
   const int first = random.integer(0, cols - 1);
   Vector v = Vector::Zero(cols);
   v.tail(cols - first) = random.vector(cols - first);
@@ -126,6 +135,32 @@ BOOST_AUTO_TEST_CASE(rows_can_be_added_one_by_one) {
   Vector out(8);
   multiply(panels, Vector::Ones(5).eval().data(), out.data());
   check_rest_is_zero(out, 6);
+}
+
+BOOST_AUTO_TEST_CASE(rows_of_another_can_be_added) {
+  for (int before = 0; before <= 9; ++before) {
+    for (int count = 1; count <= 9; ++count) {
+      BOOST_TEST_CONTEXT("seed 100 * " << before << " + " << count) {
+        Random random(100 * before + count);
+        Matrix m = random.matrix(before + count, 5);
+        const PanelMatrix other(m.bottomRows(count));
+        PanelMatrix panels(20, 5);
+        panels.set_rows(0, random.matrix(20, 5));
+        panels.resize_for_rows(before, 5);
+        panels.set_rows(0, m.topRows(before));
+        panels.append_rows(other);
+        BOOST_TEST((dense(panels) - m).norm() == 0.0);
+        Vector out(20);
+        multiply(panels, Vector::Ones(5).eval().data(), out.data());
+        check_rest_is_zero(out.head(PanelMatrix::padded(before + count)), before + count);
+
+        panels.append_row(other, count - 1, -2.0);
+        m.conservativeResize(before + count + 1, 5);
+        m.row(before + count) = -2.0 * m.row(before + count - 1);
+        BOOST_TEST((dense(panels) - m).norm() == 0.0);
+      }
+    }
+  }
 }
 
 BOOST_AUTO_TEST_CASE(rows_of_another_matrix_can_be_added) {

@@ -1,9 +1,10 @@
-// RowSpectrum against Eigen's SVD: wide, square and tall rows, regular and deficient.
+// RowSpectrum against Eigen's SVD: wide, square and tall rows, regular and deficient, and rows in another metric.
 #include "support/panels.hpp"
 #include "support/random.hpp"
 
 #include <tope/law/row_spectrum.hpp>
 
+#include <Eigen/Cholesky>
 #include <Eigen/SVD>
 #include <boost/test/unit_test.hpp>
 
@@ -12,32 +13,48 @@ namespace tope::test {
 BOOST_AUTO_TEST_SUITE(row_spectrum)
 namespace {
 
+/// What the spectrum says of K = C^-1 A, where r = C^-1 given.
+void check_spectrum(RowSpectrum& spectrum, const Matrix& k, const Vector& r, const PanelMatrix& a,
+                    const Vector& given) {
+  const auto d = k.cols();
+  BOOST_TEST(spectrum.size() == std::min(k.rows(), d));
+  const Vector values = Eigen::JacobiSVD<Matrix>(k).singularValues();
+  Vector components(PanelMatrix::padded(spectrum.size()));
+  spectrum.components(a, padded(given), components);
+  const Matrix directions = dense(spectrum.directions());
+  Matrix gram = Matrix::Zero(d, d);
+  Vector product = Vector::Zero(d);
+  for (int i = 0; i < spectrum.size(); ++i) {
+    BOOST_TEST(std::abs(spectrum.squared(i) - std::pow(values[spectrum.size() - 1 - i], 2)) <= 1e-12);
+    BOOST_TEST(std::abs(directions.row(i).squaredNorm() - spectrum.squared(i)) <= 1e-12);
+    gram += directions.row(i).transpose() * directions.row(i);
+    product += components[i] * directions.row(i);
+  }
+  BOOST_TEST((gram - k.transpose() * k).norm() <= 1e-12);
+  BOOST_TEST((product - k.transpose() * r).norm() <=
+             1e-7);  // components of vanishing directions do not count
+}
+
 void check(Random& random, const Matrix& k) {
   const auto m = static_cast<int>(k.rows());
   const auto d = static_cast<int>(k.cols());
   const PanelMatrix rows(k);
   PanelMatrix gram(std::max(m, d), std::max(m, d));
   m < d ? multiply_rows(rows, gram) : multiply_columns(rows, gram);
-  RowSpectrum spectrum(std::min(m, d) + 2 > d ? std::min(m, d) + 2 : d);
-  spectrum.compute(rows, gram);
-  BOOST_TEST(spectrum.size() == std::min(m, d));
-
-  const Vector values = Eigen::JacobiSVD<Matrix>(k).singularValues();
+  SymmetricEigen eigen(std::min(m, d));
+  RowSpectrum spectrum(std::min(m, d) + 2, d);
+  spectrum.compute(rows, gram, eigen);
   const Vector r = random.vector(m);
-  Vector components(spectrum.size());
-  spectrum.components(rows, padded(r), components);
-  Matrix gram_again = Matrix::Zero(d, d);
-  Vector product = Vector::Zero(d);
-  for (int i = 0; i < spectrum.size(); ++i) {
-    const Eigen::Map<const Vector> direction(spectrum.direction(i), d);
-    BOOST_TEST(std::abs(spectrum.squared(i) - std::pow(values[spectrum.size() - 1 - i], 2)) <= 1e-12);
-    BOOST_TEST(std::abs(direction.squaredNorm() - spectrum.squared(i)) <= 1e-12);
-    gram_again += direction * direction.transpose();
-    product += components[i] * direction;
+  check_spectrum(spectrum, k, r, rows, r);
+  if (m >= d) {
+    return;
   }
-  BOOST_TEST((gram_again - k.transpose() * k).norm() <= 1e-12);
-  BOOST_TEST((product - k.transpose() * r).norm() <=
-             1e-7);  // components of vanishing directions do not count
+  const Matrix metric = random.positive_definite(m, 0.5, 2.0);
+  Cholesky factor(m);
+  BOOST_REQUIRE(factor.factorise(PanelMatrix(metric)));
+  const Matrix c = Eigen::LLT<Matrix>(metric).matrixL();
+  spectrum.compute(factor, PanelMatrix(c * k), gram, eigen);
+  check_spectrum(spectrum, k, r, PanelMatrix(c * k), c * r);
 }
 
 }  // namespace

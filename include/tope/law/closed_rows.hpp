@@ -30,8 +30,12 @@ class ClosedRows {
   void project(const PanelMatrix& a, PanelMatrix& out);
   /// Takes orthonormal directions (m x n) whole. They and all of Q must be orthogonal.
   void close(const PanelMatrix& rows);
+  /// Takes one more direction (n) whole.
+  void close(const double* direction);
   /// Takes each direction of the spectrum, which are rows of some A N, by a share.
   void close(const RowSpectrum& spectrum, const Vector& shares);
+  /// Gives back all but the first `count` rows.
+  void keep(int count);
   /// Takes all that is open. What the rows are is then undefined.
   void close_all();
 
@@ -40,7 +44,6 @@ class ClosedRows {
   Vector shares_;  // (k)
   int whole_ = 0;
   PanelMatrix along_;  // A Q^T (m x k)
-  Vector direction_;   // (n)
 };
 
 }  // namespace tope

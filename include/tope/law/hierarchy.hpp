@@ -1,9 +1,7 @@
 #pragma once
 
-#include <tope/law/cholesky.hpp>
-#include <tope/law/closed_rows.hpp>
-#include <tope/law/level_rows.hpp>
-#include <tope/law/open_basis.hpp>
+#include <tope/law/held_limits.hpp>
+#include <tope/law/hierarchy_level.hpp>
 #include <tope/law/stack_law.hpp>
 
 #include <vector>
@@ -20,8 +18,9 @@ namespace tope {
 /// every rho >= rho_0 this is the undamped law; where rows conflict or are deficient it is least squares in
 /// the metric B^-1. N is kept by rows Q that are closed, to which each level adds its own; below a level that takes directions by
 /// shares, as Z Z^T: a level then has as many unknowns as directions are open, and its spectrum is taken from the smaller of G and
-/// Z^T A^T L^-T L^-1 A Z. What does not depend on the selection is worked out once a cycle, and
-/// where a selection only adds limit rows to the one before, those rows alone are added.
+/// Z^T A^T L^-T L^-1 A Z. What does not depend on the selection is worked out once a cycle. Where a selection only adds
+/// limit rows to the one before, each closes one more direction to every level, which changes A N and A N A^T by rank one;
+/// that holds down to the first level that is damped.
 class Hierarchy final : public StackLaw {
  public:
   struct Options {
@@ -39,62 +38,60 @@ class Hierarchy final : public StackLaw {
   void solve(const Stack& stack, const Selection& selection, const Vector& limit_target, Solution& solution);
 
  private:
-  /// What a level has in common whatever limit rows are above it.
-  struct Level {
-    Level(const Stack& stack, int max_rows);
-
-    std::size_t first = 0;  // task
-    std::size_t last = 0;   // one past its last task
-    LevelRows given;        // A and b
-    PanelMatrix metric;     // B (m x m)
-    Cholesky factor;        // B = L L^T, once it is needed
-    bool ready = false;
-    bool factorised = false;
+  /// A level's tasks.
+  struct Range {
+    std::size_t first = 0;
+    std::size_t last = 0;  // one past its last task
   };
 
-  void hold_limits(const Stack& stack, const Selection& selection, const Vector& limit_target);
-  void hold_limit(const Stack& stack, Eigen::Index joint, double target);
-  void release_limits();
-  void prepare(const Stack& stack, const Selection& selection, Level& level);
-  const PanelMatrix& rows(const Level& level) const;
-  void add_level(const Stack& stack, Level& level, bool last, Solution& solution);
+  void select_tasks(const Selection& selection);
+  bool empty(std::size_t level) const;
+  void hold_limits(const Stack& stack, const Selection& selection);
+  void close_in_shared_levels(const Vector& direction);
+  void prepare(const Stack& stack, const Selection& selection, std::size_t first, HierarchyLevel& level);
+  const PanelMatrix& rows(const HierarchyLevel& level) const;
+  void add_known(HierarchyLevel& level, Solution& solution);
+  bool add_level(const Stack& stack, HierarchyLevel& level, bool shared, bool last, Solution& solution);
+  void find_residual(const HierarchyLevel& level, bool plain);
+  void restore_closed(const HierarchyLevel& level);
   void add_rest();
   bool plain_is_undamped() const;
-  void project(bool plain, const Level& level);
-  void move();
-  bool add_undamped(const Level& level, bool last);
-  void whiten(bool plain, Level& level);
-  bool add_whitened(bool last);
+  void project(HierarchyLevel& level);
+  void add_clear(const HierarchyLevel& level, bool to_be_closed);
+  void add_by_rows(HierarchyLevel& level, bool last);
+  bool add_by_columns(HierarchyLevel& level, bool plain, bool last);
+  void whiten_columns(HierarchyLevel& level, bool plain);
   void minimise();
-  void minimise_damped();
+  void minimise_damped(RowSpectrum& spectrum, const PanelMatrix& rows);
+  void close_shares(const RowSpectrum& spectrum);
+  void move();
   double damped(double rho) const;
 
   Options options_;
-  std::vector<Level> levels_;
-  Level partial_;  // a level of which some tasks are not selected
-  RowSpectrum spectrum_;
+  std::vector<Range> ranges_;
+  bool needs_basis_;  // some level asks for all freedom and not for y itself: Z from the start
+  std::vector<HierarchyLevel> levels_;
 
-  std::vector<char> held_;  // joints whose limit row is in:
-  Vector held_target_;
-  ClosedRows held_rows_;  // Q
-  OpenBasis held_open_;   // its twin, where levels begin with that,
-  Vector held_y_;         // and y, of these rows alone
+  HeldLimits limits_;
+  std::vector<char> tasks_;  // of the selection before
+  // Levels, from the highest, of which A N is known from that selection. All above the last of them are clear, or damped and
+  // not moved by any row that was added.
+  std::size_t shared_ = 0;
 
   ClosedRows closed_;  // Q (k x n), until a level below one that takes by shares; from there on
   OpenBasis open_;     // Z (n x d)
   bool by_basis_ = false;
-  bool needs_basis_ = false;  // some level asks for all freedom and not for y itself: Z from the start
-  PanelMatrix motion_;        // T, for a task that asks for it
-  PanelMatrix limit_row_;
-  PanelMatrix task_;    // A N (m x n) or A Z (m x d), or that times L^-1
-  PanelMatrix gram_;    // A N A^T, or G or its small twin
-  PanelMatrix excess_;  // A N A^T - rho_0 B
+  PanelMatrix motion_;  // T, for a task that asks for it
+  PanelMatrix task_;    // L^-1 A Z (m x d)
+  PanelMatrix gram_;    // G or its small twin
   Cholesky factor_;
-  Cholesky clear_;   // of what is positive definite when every rho > rho_0
+  Cholesky clear_;  // of what is positive definite when every rho > rho_0
+  SymmetricEigen eigen_;
+  RowSpectrum spectrum_;  // of columns
   Vector y_;         // (n), padded like all that panels are multiplied with
-  Vector residual_;  // r (m)
+  Vector residual_;  // b - A y (m)
   Vector weights_;   // (m or d)
-  Vector step_;      // (d)
+  Vector step_;      // (n or d)
   Vector shares_;
 };
 

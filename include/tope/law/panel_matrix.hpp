@@ -67,6 +67,7 @@ class PanelMatrix {
     }
   }
   /// Copies m into the rows from `first` on.
+  void set_rows(Eigen::Index first, const Matrix& m);
   template <typename Derived>
   void set_rows(Eigen::Index first, const Eigen::MatrixBase<Derived>& m) {
     for (Eigen::Index i = 0; i < m.rows(); ++i) {
@@ -87,20 +88,21 @@ class PanelMatrix {
     }
   }
 
-  /// Adds the rows of another matrix (any x cols) at the end.
-  void append_rows(const PanelMatrix& other) {
-    for (Eigen::Index i = 0; i < other.rows_; ++i, ++rows_) {
-      const double* from = other.panel(i / height) + i % height;
-      double* to = panel(rows_ / height);
-      if (rows_ % height == 0) {
-        Eigen::Map<Vector>(to, height * cols_).setZero();
-      }
-      to += rows_ % height;
-      for (Eigen::Index j = 0; j < height * cols_; j += height) {
-        to[j] = from[j];
-      }
+  /// Adds a row of another matrix (any x cols) at the end, times a factor.
+  void append_row(const PanelMatrix& other, Eigen::Index row, double factor = 1.0) {
+    const double* from = other.panel(row / height) + row % height;
+    double* to = panel(rows_ / height);
+    if (rows_ % height == 0) {
+      Eigen::Map<Vector>(to, height * cols_).setZero();
+    }
+    to += rows_ % height;
+    ++rows_;
+    for (Eigen::Index j = 0; j < height * cols_; j += height) {
+      to[j] = factor * from[j];
     }
   }
+  /// Adds the rows of another matrix (any x cols) at the end.
+  void append_rows(const PanelMatrix& other);
 
   double& operator()(Eigen::Index i, Eigen::Index j) { return values_[index(i, j)]; }
   double operator()(Eigen::Index i, Eigen::Index j) const { return values_[index(i, j)]; }
@@ -158,10 +160,14 @@ void subtract_product(const PanelMatrix& a, const PanelMatrix& b, const PanelMat
 void multiply_rows(const PanelMatrix& m, PanelMatrix& out);
 /// The lower triangle of M^T M.
 void multiply_columns(const PanelMatrix& m, PanelMatrix& out);
+/// Copies a square matrix's lower triangle above its diagonal.
+void make_symmetric(PanelMatrix& m);
 /// M <- factor M.
 void scale(PanelMatrix& m, double factor);
 /// out = A - scale B.
 void subtract(const PanelMatrix& a, double scale, const PanelMatrix& b, PanelMatrix& out);
+/// M -= w (rows) v^T (cols).
+void subtract_outer(PanelMatrix& m, const double* w, const double* v);
 /// Column j of M -= the first `count` columns of W (padded rows), each times its share.
 void subtract_from_column(PanelMatrix& m, Eigen::Index j, const Matrix& w, const double* shares,
                           Eigen::Index count);

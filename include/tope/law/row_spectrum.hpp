@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tope/law/cholesky.hpp>
 #include <tope/law/panel_matrix.hpp>
 #include <tope/law/symmetric_eigen.hpp>
 
@@ -9,27 +10,29 @@ namespace tope {
 /// min(m, d) are left out.
 class RowSpectrum {
  public:
-  /// For up to n of them.
-  explicit RowSpectrum(int n);
+  /// For up to max_size of them and d <= n.
+  RowSpectrum(int max_size, int n);
 
   /// `gram`: lower triangle of K K^T if m < d, of K^T K otherwise.
-  void compute(const PanelMatrix& k, const PanelMatrix& gram);
+  void compute(const PanelMatrix& k, const PanelMatrix& gram, SymmetricEigen& eigen);
+  /// Of K = C^-1 A (m < d) for a factor C of `metric`; `gram`: lower triangle of K K^T.
+  void compute(const Cholesky& metric, const PanelMatrix& a, const PanelMatrix& gram, SymmetricEigen& eigen);
 
-  int size() const { return size_; }
+  int size() const { return static_cast<int>(directions_.rows()); }
   double squared(int i) const { return squared_[i]; }  ///< sigma_i^2
-  /// sigma_i v_i (d).
-  const double* direction(int i) const { return directions_.col(i).data(); }
-  /// out[i] = u_i^T r, for the K of compute() and r (padded(m)).
+  /// sigma_i v_i, one a row (size x d).
+  const PanelMatrix& directions() const { return directions_; }
+  /// out[i] = u_i^T r (padded), for r (padded(m)) and the K of compute(); or u_i^T C^-1 r, for the A of compute().
   void components(const PanelMatrix& k, const Vector& r, Vector& out);
 
  private:
-  SymmetricEigen eigen_;
-  int size_ = 0;
+  void decompose(const PanelMatrix& gram, SymmetricEigen& eigen, PanelMatrix& vectors);
+
   bool by_rows_ = false;
   Vector squared_;
-  Matrix left_;        // u_i, by rows (padded)
-  Matrix directions_;  // (padded n x n)
-  Vector projected_;   // K^T r
+  PanelMatrix left_;  // u_i^T or u_i^T C^-1, one a row
+  PanelMatrix directions_;
+  Vector projected_;  // K^T r
 };
 
 }  // namespace tope

@@ -68,6 +68,7 @@ class Unilateral final : public StackLaw {
   BoundedLeastSquares limit_solver_;  // of level 0, for y and s / softness
   BoundedLeastSquares solver_;
   Cholesky clear_;  // of A M M^T A^T - lock^2 I
+  SymmetricEigen eigen_;
   RowSpectrum spectrum_;
   OpenBasis open_;    // M up to an orthonormal change of z, and [T; C] M ((n + p) x d)
   PanelMatrix task_;  // A M (m x d)

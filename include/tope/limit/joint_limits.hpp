@@ -126,7 +126,7 @@ class JointLimits {
   double upper_receding(int joint) const { return upper_rate_[joint]; }
   double lower_receding(int joint) const { return -lower_rate_[joint]; }
   double range_needed(int joint) const;
-  void note_distances(int joint, double to_upper, double to_lower);
+  void note_near(int joint, double ahead, double behind, double distance);
 
   JointLimitOptions options_;
   Vector gain_;
