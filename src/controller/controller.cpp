@@ -408,16 +408,19 @@ void Controller::evaluate_dynamics(const VectorArg& q, const VectorArg& v) {
 }
 
 void Controller::fill_limits(const VectorArg& q, const VectorArg& v) {
+  const bool by_rows = uses_limit_rows(options_.limits.method);
+  const JointLimits::Part part = by_rows ? JointLimits::Part::rows : JointLimits::Part::bounds;
   if (torque_mode()) {
-    limits_.update_second_order(q, v);
+    limits_.update_second_order(q, v, part);
   } else {
-    limits_.update(q);
+    limits_.update(q, part);
   }
-  stack_.limit_activation = limits_.activation();
-  stack_.limit_target = limits_.target();
-  stack_.motion_lower = limits_.motion_lower();
-  stack_.motion_upper = limits_.motion_upper();
-  if (options_.limits.method == LimitMethod::unilateral) {
+  if (by_rows) {
+    stack_.limit_activation = limits_.activation();
+    stack_.limit_target = limits_.target();
+  } else {
+    stack_.motion_lower = limits_.motion_lower();
+    stack_.motion_upper = limits_.motion_upper();
     limits_.headroom(headroom_, free_headroom_, stack_.headroom_lower, stack_.headroom_upper);
     stack_.headroom_lower /= headroom_unit_;
     stack_.headroom_upper /= headroom_unit_;
@@ -538,7 +541,10 @@ void Controller::leave_bias_to_tasks() {
     rows.b.noalias() += a * bias_y_;
   }
   to_motion(bias_y_, limit_motion_);
-  stack_.limit_target += limit_motion_;
+  if (uses_limit_rows(options_.limits.method)) {
+    stack_.limit_target += limit_motion_;
+    return;
+  }
   stack_.motion_lower += limit_motion_;
   stack_.motion_upper += limit_motion_;
   stack_.inequality_lower.noalias() += stack_.inequality * bias_y_;

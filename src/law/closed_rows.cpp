@@ -4,8 +4,7 @@
 
 namespace tope {
 
-ClosedRows::ClosedRows(int n, int max_rows)
-    : rows_(n, n), shares_(Vector::Zero(n)), along_(max_rows, n) {
+ClosedRows::ClosedRows(int n, int max_rows) : rows_(n, n), shares_(Vector::Zero(n)), along_(max_rows, n) {
   reset();
 }
 

@@ -12,6 +12,8 @@ OpenBasis::OpenBasis(int n, int image_rows)
       reflectors_(Matrix::Zero(PanelMatrix::padded(n), n)),
       along_(Matrix::Zero(PanelMatrix::padded(image_rows), n)),
       triangle_(n, n),
+      last_(n, n),
+      turned_(n, n),
       shares_(n),
       row_(Vector::Zero(PanelMatrix::padded(n))) {
   reset();
@@ -20,7 +22,7 @@ OpenBasis::OpenBasis(int n, int image_rows)
 void OpenBasis::reset() {
   whole_ = true;
   with_image_ = false;
-  open_.set_identity(triangle_.rows());
+  open_.set_identity(shares_.size());
 }
 
 void OpenBasis::reset(const OpenBasis& other) {
@@ -79,6 +81,7 @@ void OpenBasis::close_rows() {
     return;
   }
   reflect_rows();
+  turn_reflectors();
   take_out(open_, whole_);
   if (with_image_) {
     take_out(image_, false);
@@ -90,6 +93,7 @@ void OpenBasis::close_rows() {
 /// I - V T V^T with T upper triangular (Schreiber, Van Loan 1989).
 void OpenBasis::reflect_rows() {
   const Eigen::Index cols = rows_.cols();
+  triangle_.resize_for_rows(rows_.rows(), rows_.rows());
   for (Eigen::Index i = 0; i < rows_.rows(); ++i) {
     double* v = reflectors_.col(i).data();
     std::fill(v, v + i, 0.0);
@@ -111,34 +115,43 @@ void OpenBasis::reflect_rows() {
       shares_[k] = reflectors_.col(k).segment(i, cols - i).dot(reflectors_.col(i).segment(i, cols - i));
     }
     for (Eigen::Index k = 0; k < i; ++k) {
-      triangle_(k, i) = -factor * triangle_.row(k).segment(k, i - k).dot(shares_.segment(k, i - k));
+      double sum = 0.0;
+      for (Eigen::Index l = k; l < i; ++l) {
+        sum += triangle_(k, l) * shares_[l];
+      }
+      triangle_(k, i) = -factor * sum;
+      triangle_(i, k) = 0.0;
     }
   }
+}
+
+/// T V^T, without the columns that fall away.
+void OpenBasis::turn_reflectors() {
+  const Eigen::Index rank = rows_.rows();
+  const Eigen::Index cols = rows_.cols() - rank;
+  last_.resize_for_rows(rank, cols);
+  for (Eigen::Index k = 0; k < rank; ++k) {
+    const double* v = reflectors_.col(k).data() + rank;
+    for (Eigen::Index j = 0; j < cols; ++j) {
+      last_(k, j) = v[j];
+    }
+  }
+  multiply(triangle_, last_, turned_);
 }
 
 /// M <- the last columns of M (I - V T V^T). Where M is the identity, M V is V.
 void OpenBasis::take_out(PanelMatrix& m, bool identity) {
   const Eigen::Index rank = rows_.rows();
-  const Eigen::Index cols = m.cols();
   Matrix& along = identity ? reflectors_ : along_;
   for (Eigen::Index i = 0; i < rank; ++i) {
     if (identity) {
-      along.col(i).tail(along.rows() - cols).setZero();
+      along.col(i).tail(along.rows() - m.cols()).setZero();
     } else {
       multiply(m, reflectors_.col(i).data(), along.col(i).data());
     }
   }
   m.drop_front(rank);
-  for (Eigen::Index j = 0; j < m.cols(); ++j) {
-    for (Eigen::Index i = 0; i < rank; ++i) {  // T V^T, one column
-      double share = 0.0;
-      for (Eigen::Index k = i; k < rank; ++k) {
-        share += triangle_(i, k) * reflectors_(rank + j, k);
-      }
-      shares_[i] = share;
-    }
-    subtract_from_column(m, j, along, shares_.data(), rank);
-  }
+  subtract_product(m, along, turned_);
 }
 
 void OpenBasis::close(const RowSpectrum& spectrum, const Vector& shares) {

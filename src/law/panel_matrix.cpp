@@ -102,12 +102,13 @@ void add_transposed_panels(const PanelMatrix& m, Eigen::Index first, double sign
   }
 }
 
-/// Columns of a result (+)= sign times `depth` columns of A's panel times rows of B's.
+/// Columns of a result (+)= sign times `depth` columns of A, `stride` apart, times rows of B's panel.
 template <int depth, int sign, bool fresh>
-void add_block(const double* left, const double* right, Eigen::Index cols, double* result) {
+void add_block(const double* left, Eigen::Index stride, const double* right, Eigen::Index cols,
+               double* result) {
   std::array<Column, depth> factors;
   for (int i = 0; i < depth; ++i) {
-    factors[static_cast<std::size_t>(i)] = column(left, i);
+    factors[static_cast<std::size_t>(i)] = Eigen::Map<const Column>(left + stride * i);
   }
   for (Eigen::Index j = 0; j < cols; ++j) {
     Column sum = fresh ? Column::Zero().eval() : column(result, j).eval();
@@ -120,23 +121,23 @@ void add_block(const double* left, const double* right, Eigen::Index cols, doubl
 
 /// The same for a depth from 0 to 4 that the compiler does not know.
 template <int sign, bool fresh>
-void add_block(Eigen::Index depth, const double* left, const double* right, Eigen::Index cols,
-               double* result) {
+void add_block(Eigen::Index depth, const double* left, Eigen::Index stride, const double* right,
+               Eigen::Index cols, double* result) {
   switch (depth) {
     case 0:
-      add_block<0, sign, fresh>(left, right, cols, result);
+      add_block<0, sign, fresh>(left, stride, right, cols, result);
       break;
     case 1:
-      add_block<1, sign, fresh>(left, right, cols, result);
+      add_block<1, sign, fresh>(left, stride, right, cols, result);
       break;
     case 2:
-      add_block<2, sign, fresh>(left, right, cols, result);
+      add_block<2, sign, fresh>(left, stride, right, cols, result);
       break;
     case 3:
-      add_block<3, sign, fresh>(left, right, cols, result);
+      add_block<3, sign, fresh>(left, stride, right, cols, result);
       break;
     default:
-      add_block<4, sign, fresh>(left, right, cols, result);
+      add_block<4, sign, fresh>(left, stride, right, cols, result);
   }
 }
 
@@ -206,10 +207,10 @@ void multiply(const PanelMatrix& a, const PanelMatrix& b, PanelMatrix& out) {
   out.resize(a.rows(), b.cols());
   for (Eigen::Index p = 0; p < a.panels(); ++p) {
     double* result = out.panel(p);
-    add_block<1, true>(std::min(height, a.cols()), a.panel(p), b.panel(0), b.cols(), result);
+    add_block<1, true>(std::min(height, a.cols()), a.panel(p), height, b.panel(0), b.cols(), result);
     for (Eigen::Index k = height; k < a.cols(); k += height) {
-      add_block<1, false>(std::min(height, a.cols() - k), a.panel(p) + height * k, b.panel(k / height),
-                          b.cols(), result);
+      add_block<1, false>(std::min(height, a.cols() - k), a.panel(p) + height * k, height,
+                          b.panel(k / height), b.cols(), result);
     }
   }
 }
@@ -218,8 +219,8 @@ void subtract_product(const PanelMatrix& a, const PanelMatrix& b, const PanelMat
   out.assign(a);
   for (Eigen::Index p = 0; p < a.panels(); ++p) {
     for (Eigen::Index k = 0; k < b.cols(); k += height) {
-      add_block<-1, false>(std::min(height, b.cols() - k), b.panel(p) + height * k, c.panel(k / height),
-                           c.cols(), out.panel(p));
+      add_block<-1, false>(std::min(height, b.cols() - k), b.panel(p) + height * k, height,
+                           c.panel(k / height), c.cols(), out.panel(p));
     }
   }
 }
@@ -298,14 +299,12 @@ void subtract_outer(PanelMatrix& m, const double* w, const double* v) {
   }
 }
 
-void subtract_from_column(PanelMatrix& m, Eigen::Index j, const Matrix& w, const double* shares,
-                          Eigen::Index count) {
+void subtract_product(PanelMatrix& m, const Matrix& w, const PanelMatrix& b) {
   for (Eigen::Index p = 0; p < m.panels(); ++p) {
-    Column sum = column(m.panel(p), j);
-    for (Eigen::Index i = 0; i < count; ++i) {
-      sum -= shares[i] * column(w.col(i).data(), p);
+    for (Eigen::Index k = 0; k < b.rows(); k += height) {
+      add_block<-1, false>(std::min(height, b.rows() - k), w.col(k).data() + height * p, w.rows(),
+                           b.panel(k / height), m.cols(), m.panel(p));
     }
-    column(m.panel(p), j) = sum;
   }
 }
 

@@ -8,15 +8,15 @@
 namespace tope {
 namespace {
 
-/// The usual sizes of a task, which Eigen's general product is slow at.
+/// J T for the usual sizes of a task, which Eigen's general product is slow at, and an upper triangular T.
 template <int rows>
-void multiply(const Matrix& jacobian, const Matrix& motion, Matrix& a) {
+void multiply_upper(const Matrix& jacobian, const Matrix& motion, Matrix& a) {
   using Rows = Eigen::Matrix<double, rows, Eigen::Dynamic>;
   const Eigen::Map<const Rows> in(jacobian.data(), rows, jacobian.cols());
   Eigen::Map<Rows> out(a.data(), rows, a.cols());
   for (Eigen::Index j = 0; j < motion.cols(); ++j) {
     Eigen::Matrix<double, rows, 1> sum = Eigen::Matrix<double, rows, 1>::Zero();
-    for (Eigen::Index k = 0; k < motion.rows(); ++k) {
+    for (Eigen::Index k = 0; k <= j; ++k) {
       sum += motion(k, j) * in.col(k);
     }
     out.col(j) = sum;
@@ -41,14 +41,18 @@ Whitening Whitening::velocity(const Matrix& weight) {
   return whitening;
 }
 
-Whitening Whitening::torque(int n) { return Whitening(Matrix::Identity(n, n)); }
+Whitening Whitening::torque(int n) {
+  Whitening whitening(Matrix::Identity(n, n));
+  whitening.upper_ = true;
+  return whitening;
+}
 
 void Whitening::rows(const Matrix& jacobian, Matrix& a) const {
   a.resize(jacobian.rows(), jacobian.cols());
   if (identity_) {
     a = jacobian;
-  } else if (jacobian.rows() == 3) {
-    multiply<3>(jacobian, motion_, a);
+  } else if (upper_ && jacobian.rows() == 3) {
+    multiply_upper<3>(jacobian, motion_, a);
   } else {
     a.noalias() = jacobian * motion_;
   }

@@ -76,41 +76,56 @@ bool JointLimits::move(int joint, const LimitMotion& motion) {
   return true;
 }
 
-void JointLimits::update(const VectorArg& q) {
+void JointLimits::update(const VectorArg& q, Part part) {
   beyond_ = -1;
   furthest_beyond_ = 0.0;
   engagement_slack_ = gain_.cwiseProduct(buffer_);
   for (int j = 0; j < size(); ++j) {
     const double to_upper = upper_[j] - q[j];
     const double to_lower = q[j] - lower_[j];
-    const double distance = std::min(to_upper, to_lower);
-    side_[j] = to_upper <= to_lower ? 1.0 : -1.0;
-    activation_[j] = ramp(options_.ramp, 1.0 - distance / buffer_[j]);
-    const double rate = side_[j] > 0.0 ? upper_rate_[j] : lower_rate_[j];
-    const double v_max = velocity_limit_[j];
-    // far beyond a limit the row would lead back faster than the joint may move
-    target_[j] = std::isfinite(distance)
-                     ? std::clamp(side_[j] * gain_[j] * (distance - buffer_[j]) + rate, -v_max, v_max)
-                     : 0.0;
-
-    const double ahead = gain_[j] * (to_upper - options_.margin) + upper_receding(j);
-    const double behind = gain_[j] * (to_lower - options_.margin) + lower_receding(j);
-    motion_upper_[j] = std::clamp(ahead, -0.5 * v_max, v_max);
-    motion_lower_[j] = -std::clamp(behind, -0.5 * v_max, v_max);
-    upper_at_rest_[j] = std::max(0.0, motion_upper_[j]);
-    lower_at_rest_[j] = std::max(0.0, -motion_lower_[j]);
-    note_near(j, ahead, behind, distance);
+    note_beyond(j, std::min(to_upper, to_lower));
+    if (part != Part::bounds) {
+      fill_row(j, to_upper, to_lower);
+    }
+    if (part != Part::rows) {
+      fill_bounds(j, to_upper, to_lower);
+    }
   }
 }
 
-/// What both orders keep of a joint's limits: bounds on the speed that they set at first order, and the lesser distance.
-void JointLimits::note_near(int joint, double ahead, double behind, double distance) {
+void JointLimits::fill_row(int j, double to_upper, double to_lower) {
+  const double distance = std::min(to_upper, to_lower);
+  side_[j] = to_upper <= to_lower ? 1.0 : -1.0;
+  activation_[j] = ramp(options_.ramp, 1.0 - distance / buffer_[j]);
+  const double rate = side_[j] > 0.0 ? upper_rate_[j] : lower_rate_[j];
+  const double v_max = velocity_limit_[j];
+  // far beyond a limit the row would lead back faster than the joint may move
+  target_[j] = std::isfinite(distance)
+                   ? std::clamp(side_[j] * gain_[j] * (distance - buffer_[j]) + rate, -v_max, v_max)
+                   : 0.0;
+}
+
+void JointLimits::fill_bounds(int j, double to_upper, double to_lower) {
+  const double v_max = velocity_limit_[j];
+  const double ahead = gain_[j] * (to_upper - options_.margin) + upper_receding(j);
+  const double behind = gain_[j] * (to_lower - options_.margin) + lower_receding(j);
+  motion_upper_[j] = std::clamp(ahead, -0.5 * v_max, v_max);
+  motion_lower_[j] = -std::clamp(behind, -0.5 * v_max, v_max);
+  upper_at_rest_[j] = std::max(0.0, motion_upper_[j]);
+  lower_at_rest_[j] = std::max(0.0, -motion_lower_[j]);
+  note_near(j, ahead, behind);
+}
+
+/// Whether position limits or the speed limit set the bounds, by what the first ones allow.
+void JointLimits::note_near(int joint, double ahead, double behind) {
   const auto k = static_cast<std::size_t>(joint);
   near_upper_[k] = ahead < velocity_limit_[joint] ? 1 : 0;
   near_lower_[k] = behind < velocity_limit_[joint] ? 1 : 0;
-  const double excess = -distance;
-  if (excess > furthest_beyond_) {
-    furthest_beyond_ = excess;
+}
+
+void JointLimits::note_beyond(int joint, double distance) {
+  if (-distance > furthest_beyond_) {
+    furthest_beyond_ = -distance;
     beyond_ = joint;
   }
 }
@@ -142,44 +157,59 @@ double JointLimits::allowed_acceleration(const Envelope& allowed, double recedin
   return -allowed.slope * (speed - receding) - options_.servo_gain * (speed - allowed.speed + slack);
 }
 
-void JointLimits::update_second_order(const VectorArg& q, const VectorArg& v) {
+void JointLimits::update_second_order(const VectorArg& q, const VectorArg& v, Part part) {
   beyond_ = -1;
   furthest_beyond_ = 0.0;
   for (int j = 0; j < size(); ++j) {
     const double to_upper = upper_[j] - q[j];
     const double to_lower = q[j] - lower_[j];
-    const double reserve = gain_[j] * buffer_[j];  // slack at which a row begins to act
-    const double upper_away = upper_receding(j);
-    const double lower_away = lower_receding(j);
-    if (options_.measure == Measure::predicted) {
-      const Envelope upper = envelope(j, to_upper, upper_away);
-      const Envelope lower = envelope(j, to_lower, lower_away);
-      const double slack_upper = upper.speed - v[j];
-      const double slack_lower = lower.speed + v[j];
-      side_[j] = slack_upper <= slack_lower ? 1.0 : -1.0;
-      activation_[j] = ramp(options_.ramp, 1.0 - std::min(slack_upper, slack_lower) / reserve);
-      target_[j] = side_[j] > 0.0 ? allowed_acceleration(upper, upper_away, v[j], reserve)
-                                  : -allowed_acceleration(lower, lower_away, -v[j], reserve);
-    } else {
-      const double distance = std::min(to_upper, to_lower);
-      side_[j] = to_upper <= to_lower ? 1.0 : -1.0;
-      activation_[j] = ramp(options_.ramp, 1.0 - distance / buffer_[j]);
-      const double servo = gain_[j] * options_.servo_gain;
-      const double damping = gain_[j] + options_.servo_gain;
-      const double relative = v[j] - (side_[j] > 0.0 ? upper_rate_[j] : lower_rate_[j]);
-      target_[j] =
-          std::isfinite(distance) ? side_[j] * servo * (distance - buffer_[j]) - damping * relative : 0.0;
+    note_beyond(j, std::min(to_upper, to_lower));
+    if (part != Part::bounds && options_.measure == Measure::predicted) {
+      fill_predicted_row(j, to_upper, to_lower, v[j]);
+    } else if (part != Part::bounds) {
+      fill_position_row(j, to_upper, to_lower, v[j]);
     }
-    const Envelope ahead = envelope(j, to_upper - options_.margin, upper_away);
-    const Envelope behind = envelope(j, to_lower - options_.margin, lower_away);
-    motion_upper_[j] = allowed_acceleration(ahead, upper_away, v[j], 0.0);
-    motion_lower_[j] = -allowed_acceleration(behind, lower_away, -v[j], 0.0);
-    upper_at_rest_[j] = options_.servo_gain * std::max(0.0, ahead.speed);
-    lower_at_rest_[j] = options_.servo_gain * std::max(0.0, behind.speed);
-    note_near(j, gain_[j] * (to_upper - options_.margin) + upper_away,
-              gain_[j] * (to_lower - options_.margin) + lower_away, std::min(to_upper, to_lower));
+    if (part != Part::rows) {
+      fill_acceleration_bounds(j, to_upper, to_lower, v[j]);
+    }
   }
   engagement_slack_ = options_.servo_gain * gain_.cwiseProduct(buffer_);
+}
+
+void JointLimits::fill_predicted_row(int j, double to_upper, double to_lower, double speed) {
+  const double reserve = gain_[j] * buffer_[j];  // slack at which a row begins to act
+  const Envelope upper = envelope(j, to_upper, upper_receding(j));
+  const Envelope lower = envelope(j, to_lower, lower_receding(j));
+  const double slack_upper = upper.speed - speed;
+  const double slack_lower = lower.speed + speed;
+  side_[j] = slack_upper <= slack_lower ? 1.0 : -1.0;
+  activation_[j] = ramp(options_.ramp, 1.0 - std::min(slack_upper, slack_lower) / reserve);
+  target_[j] = side_[j] > 0.0 ? allowed_acceleration(upper, upper_receding(j), speed, reserve)
+                              : -allowed_acceleration(lower, lower_receding(j), -speed, reserve);
+}
+
+void JointLimits::fill_position_row(int j, double to_upper, double to_lower, double speed) {
+  const double distance = std::min(to_upper, to_lower);
+  side_[j] = to_upper <= to_lower ? 1.0 : -1.0;
+  activation_[j] = ramp(options_.ramp, 1.0 - distance / buffer_[j]);
+  const double servo = gain_[j] * options_.servo_gain;
+  const double damping = gain_[j] + options_.servo_gain;
+  const double relative = speed - (side_[j] > 0.0 ? upper_rate_[j] : lower_rate_[j]);
+  target_[j] =
+      std::isfinite(distance) ? side_[j] * servo * (distance - buffer_[j]) - damping * relative : 0.0;
+}
+
+void JointLimits::fill_acceleration_bounds(int j, double to_upper, double to_lower, double speed) {
+  const double upper_away = upper_receding(j);
+  const double lower_away = lower_receding(j);
+  const Envelope ahead = envelope(j, to_upper - options_.margin, upper_away);
+  const Envelope behind = envelope(j, to_lower - options_.margin, lower_away);
+  motion_upper_[j] = allowed_acceleration(ahead, upper_away, speed, 0.0);
+  motion_lower_[j] = -allowed_acceleration(behind, lower_away, -speed, 0.0);
+  upper_at_rest_[j] = options_.servo_gain * std::max(0.0, ahead.speed);
+  lower_at_rest_[j] = options_.servo_gain * std::max(0.0, behind.speed);
+  note_near(j, gain_[j] * (to_upper - options_.margin) + upper_away,
+            gain_[j] * (to_lower - options_.margin) + lower_away);
 }
 
 void JointLimits::headroom(const Vector& at_limit, const Vector& away, Vector& lower, Vector& upper) const {

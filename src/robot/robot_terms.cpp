@@ -36,6 +36,24 @@ struct RobotTerms::Scratch {
     pinocchio::getFrameJacobian(model(), data, static_cast<pinocchio::FrameIndex>(index),
                                 pinocchio::LOCAL_WORLD_ALIGNED, jacobian);
     selected = index;
+    drift_is_known = false;
+  }
+
+  /// Makes `drift` that of the selected frame.
+  void find_drift() {
+    if (drift_is_known) {
+      return;
+    }
+    const pinocchio::Frame& chosen = frame(selected);
+    const pinocchio::JointIndex joint = chosen.parentJoint;
+    // a_gf of nonLinearEffects is the acceleration without any of the joints', less gravity
+    const pinocchio::Motion joint_acceleration = data.a_gf[joint] + data.oMi[joint].actInv(model().gravity);
+    const pinocchio::Motion acceleration = chosen.placement.actInv(joint_acceleration);
+    const pinocchio::Motion velocity = chosen.placement.actInv(data.v[joint]);
+    const Matrix3& rotation = world_T_frame.rotation();
+    drift.head<3>() = rotation * (acceleration.linear() + velocity.angular().cross(velocity.linear()));
+    drift.tail<3>() = rotation * acceleration.angular();
+    drift_is_known = true;
   }
 
   /// Makes `data.com`, `data.mass` and `data.Jcom` those of the state.
@@ -60,6 +78,8 @@ struct RobotTerms::Scratch {
   Matrix mass_matrix;
   bool com_is_known = false;
   int selected = -1;
+  bool drift_is_known = false;
+  Eigen::Matrix<double, 6, 1> drift;  // of the selected frame
   pinocchio::SE3 world_T_frame;
   Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian;
 };
@@ -89,20 +109,9 @@ const Matrix& RobotTerms::mass_matrix() const { return scratch_->mass_matrix; }
 const Vector& RobotTerms::bias() const { return scratch_->data.nle; }
 
 Eigen::Matrix<double, 6, 1> RobotTerms::frame_drift(int frame) const {
-  Scratch& s = *scratch_;
-  s.select(frame);
-  const pinocchio::Frame& chosen = s.frame(frame);
-  const pinocchio::JointIndex joint = chosen.parentJoint;
-  // a_gf of nonLinearEffects is the acceleration without any of the joints', less gravity
-  const pinocchio::Motion joint_acceleration =
-      s.data.a_gf[joint] + s.data.oMi[joint].actInv(s.model().gravity);
-  const pinocchio::Motion acceleration = chosen.placement.actInv(joint_acceleration);
-  const pinocchio::Motion velocity = chosen.placement.actInv(s.data.v[joint]);
-  const Matrix3& rotation = s.world_T_frame.rotation();
-  Eigen::Matrix<double, 6, 1> drift;
-  drift.head<3>() = rotation * (acceleration.linear() + velocity.angular().cross(velocity.linear()));
-  drift.tail<3>() = rotation * acceleration.angular();
-  return drift;
+  scratch_->select(frame);
+  scratch_->find_drift();
+  return scratch_->drift;
 }
 
 Vector3 RobotTerms::com_drift() const {

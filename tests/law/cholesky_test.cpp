@@ -43,8 +43,7 @@ void check(Cholesky& cholesky, const Matrix& m, double shift, Random& random) {
   cholesky.whiten_twice(twice);
   whitened = Matrix(size, size);
   twice.copy_to(whitened);
-  BOOST_TEST((factor * whitened * factor.transpose() - symmetric).norm() <=
-             1e-12 * (1.0 + symmetric.norm()));
+  BOOST_TEST((factor * whitened * factor.transpose() - symmetric).norm() <= 1e-12 * (1.0 + symmetric.norm()));
   const Matrix wide = several.transpose();
   PanelMatrix across(wide);
   cholesky.whiten_across(across);

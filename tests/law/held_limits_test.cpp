@@ -47,9 +47,9 @@ BOOST_AUTO_TEST_CASE(meets_its_rows_with_the_least_motion) {
         limits.meet(stack.limit_target, y);
         BOOST_TEST((y.head(stack.size()) - least_motion(stack, joints)).norm() <= 1e-10);
         const Matrix z = dense(limits.open().columns());
-        BOOST_TEST((z * z.transpose() + closed.transpose() * closed -
-                    Matrix::Identity(stack.size(), stack.size()))
-                       .norm() <= 1e-11);
+        BOOST_TEST(
+            (z * z.transpose() + closed.transpose() * closed - Matrix::Identity(stack.size(), stack.size()))
+                .norm() <= 1e-11);
       }
       Selection selection = select_all_tasks(stack);
       selection.limits.assign(selection.limits.size(), 1);

@@ -88,10 +88,10 @@ class Hierarchy final : public StackLaw {
   Cholesky clear_;  // of what is positive definite when every rho > rho_0
   SymmetricEigen eigen_;
   RowSpectrum spectrum_;  // of columns
-  Vector y_;         // (n), padded like all that panels are multiplied with
-  Vector residual_;  // b - A y (m)
-  Vector weights_;   // (m or d)
-  Vector step_;      // (n or d)
+  Vector y_;              // (n), padded like all that panels are multiplied with
+  Vector residual_;       // b - A y (m)
+  Vector weights_;        // (m or d)
+  Vector step_;           // (n or d)
   Vector shares_;
 };
 

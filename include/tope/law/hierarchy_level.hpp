@@ -62,7 +62,7 @@ class HierarchyLevel {
   bool factorised_ = false;
 
   PanelMatrix projected_;
-  PanelMatrix gram_;     // A N A^T, the lower triangle
+  PanelMatrix gram_;      // A N A^T, the lower triangle
   bool by_rows_ = false;  // projected_ is A N, and gram_ is known
   Cholesky clear_factor_;
   Cholesky factor_;
@@ -72,9 +72,9 @@ class HierarchyLevel {
 
   int closed_before_ = 0;
   int closed_since_ = 0;
-  Matrix directions_;  // those closed since, one a column (padded)
-  Vector along_;       // A N m, for the direction m that is being closed (m, padded)
-  Vector weights_;     // (A N A^T)^-1 of it
+  Matrix directions_;   // those closed since, one a column (padded)
+  Vector along_;        // A N m, for the direction m that is being closed (m, padded)
+  Vector weights_;      // (A N A^T)^-1 of it
   PanelMatrix square_;  // (m x m), for what is not kept
 };
 

@@ -40,6 +40,7 @@ class OpenBasis {
  private:
   void close_rows();
   void reflect_rows();
+  void turn_reflectors();
   void take_out(PanelMatrix& m, bool identity);
   void turn_all(const double* v, double factor);
   const double* row_of(const PanelMatrix& m, Eigen::Index row);
@@ -47,11 +48,13 @@ class OpenBasis {
   PanelMatrix open_;
   PanelMatrix image_;
   bool with_image_ = false;
-  bool whole_ = true;  // Z is the identity
-  PanelMatrix rows_;   // what is to be taken out whole (m x d)
-  Matrix reflectors_;  // V (d x m)
-  Matrix along_;       // M V (rows of M x m), padded
-  Matrix triangle_;    // T (m x m)
+  bool whole_ = true;     // Z is the identity
+  PanelMatrix rows_;      // what is to be taken out whole (m x d)
+  Matrix reflectors_;     // V (d x m)
+  Matrix along_;          // M V (rows of M x m), padded
+  PanelMatrix triangle_;  // T (m x m)
+  PanelMatrix last_;      // V^T (m x d - m), where columns stay
+  PanelMatrix turned_;    // T V^T, the same columns
   Vector shares_;
   Vector row_;  // (n), padded
 };

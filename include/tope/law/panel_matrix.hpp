@@ -168,9 +168,8 @@ void scale(PanelMatrix& m, double factor);
 void subtract(const PanelMatrix& a, double scale, const PanelMatrix& b, PanelMatrix& out);
 /// M -= w (rows) v^T (cols).
 void subtract_outer(PanelMatrix& m, const double* w, const double* v);
-/// Column j of M -= the first `count` columns of W (padded rows), each times its share.
-void subtract_from_column(PanelMatrix& m, Eigen::Index j, const Matrix& w, const double* shares,
-                          Eigen::Index count);
+/// M -= the first columns of W (padded rows) times B, as many as B has rows.
+void subtract_product(PanelMatrix& m, const Matrix& w, const PanelMatrix& b);
 /// M <- M (I - scale v v^T), where v has the coordinates from column `first` on and zeros before.
 void turn(PanelMatrix& m, Eigen::Index first, const double* v, double scale);
 

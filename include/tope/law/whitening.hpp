@@ -33,6 +33,7 @@ class Whitening {
   Cholesky factor_;
   PanelMatrix inverse_;  // L^-1
   bool identity_ = false;
+  bool upper_ = false;  // T is upper triangular
 };
 
 }  // namespace tope

@@ -67,10 +67,16 @@ class JointLimits {
   /// is none, a motion that is not finite where the joint has a limit, or buffers that would overlap.
   [[nodiscard]] bool move(int joint, const LimitMotion& motion);
 
-  /// Evaluates every row at q (nq). Never allocates.
-  void update(const VectorArg& q);
+  /// What an update works out; the rest is as it was.
+  enum class Part {
+    rows,    ///< activation(), target() and the bounds of blends
+    bounds,  ///< motion_lower(), motion_upper(), headroom() and engagement()
+    both,
+  };
+  /// Evaluates every joint at q (nq). Never allocates.
+  void update(const VectorArg& q, Part part = Part::both);
   /// The same for torque mode, at q (nq) and v (nv): motions are accelerations.
-  void update_second_order(const VectorArg& q, const VectorArg& v);
+  void update_second_order(const VectorArg& q, const VectorArg& v, Part part = Part::both);
 
   int size() const { return static_cast<int>(lower_.size()); }
   const Vector& activation() const { return activation_; }  ///< xi of each joint's row (n)
@@ -126,7 +132,13 @@ class JointLimits {
   double upper_receding(int joint) const { return upper_rate_[joint]; }
   double lower_receding(int joint) const { return -lower_rate_[joint]; }
   double range_needed(int joint) const;
-  void note_near(int joint, double ahead, double behind, double distance);
+  void fill_row(int j, double to_upper, double to_lower);
+  void fill_bounds(int j, double to_upper, double to_lower);
+  void fill_predicted_row(int j, double to_upper, double to_lower, double speed);
+  void fill_position_row(int j, double to_upper, double to_lower, double speed);
+  void fill_acceleration_bounds(int j, double to_upper, double to_lower, double speed);
+  void note_near(int joint, double ahead, double behind);
+  void note_beyond(int joint, double distance);
 
   JointLimitOptions options_;
   Vector gain_;
