@@ -335,7 +335,10 @@ void Hierarchy::whiten_columns(HierarchyLevel& level, bool plain) {
     residual_ *= weight;
     return;
   }
-  task_.assign(open_.project(rows(level), level.workspace()));
+  const PanelMatrix& task = open_.project(rows(level), task_);
+  if (&task != &task_) {
+    task_.assign(task);
+  }
   level.metric().whiten(task_);
   level.metric().whiten(residual_.data());
 }

@@ -19,8 +19,8 @@ namespace tope {
 /// the metric B^-1. N is kept by rows Q that are closed, to which each level adds its own; below a level that takes directions by
 /// shares, as Z Z^T: a level then has as many unknowns as directions are open, and its spectrum is taken from the smaller of G and
 /// Z^T A^T L^-T L^-1 A Z. What does not depend on the selection is worked out once a cycle. Where a selection only adds
-/// limit rows to the one before, each closes one more direction to every level, which changes A N and A N A^T by rank one;
-/// that holds down to the first level that is damped.
+/// limit rows to the one before, each closes one more direction to every level, which changes A N and A N A^T by rank one,
+/// down to the first damped level that the direction moves.
 class Hierarchy final : public StackLaw {
  public:
   struct Options {
