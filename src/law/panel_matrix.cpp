@@ -2,9 +2,31 @@
 
 #include <algorithm>
 #include <array>
+#include <type_traits>
 
 namespace tope {
 namespace {
+
+/// Calls an action with a number from 0 to 4 that the compiler then knows.
+template <typename Action>
+void with_constant(Eigen::Index count, Action action) {
+  switch (count) {
+    case 0:
+      action(std::integral_constant<int, 0>());
+      break;
+    case 1:
+      action(std::integral_constant<int, 1>());
+      break;
+    case 2:
+      action(std::integral_constant<int, 2>());
+      break;
+    case 3:
+      action(std::integral_constant<int, 3>());
+      break;
+    default:
+      action(std::integral_constant<int, 4>());
+  }
+}
 
 /// Copies `run` numbers from the beginning of each column, which are `stride` apart, into a panel.
 template <int run>
@@ -16,21 +38,8 @@ void copy_rows(const double* from, Eigen::Index stride, Eigen::Index cols, doubl
   }
 }
 
-/// The same for a count that the compiler does not know.
 void copy_rows(Eigen::Index run, const double* from, Eigen::Index stride, Eigen::Index cols, double* panel) {
-  switch (run) {
-    case 1:
-      copy_rows<1>(from, stride, cols, panel);
-      break;
-    case 2:
-      copy_rows<2>(from, stride, cols, panel);
-      break;
-    case 3:
-      copy_rows<3>(from, stride, cols, panel);
-      break;
-    default:
-      copy_rows<4>(from, stride, cols, panel);
-  }
+  with_constant(run, [&](auto known) { copy_rows<known>(from, stride, cols, panel); });
 }
 
 /// One panel times x.
@@ -64,28 +73,11 @@ void multiply_by_transposed(const double* left, const double* right, Eigen::Inde
   }
 }
 
-/// The same for a count that the compiler does not know.
-void multiply_by_transposed(Eigen::Index count, const double* left, const double* right, Eigen::Index cols,
-                            double* result) {
-  switch (count) {
-    case 1:
-      multiply_by_transposed<1>(left, right, cols, result);
-      break;
-    case 2:
-      multiply_by_transposed<2>(left, right, cols, result);
-      break;
-    case 3:
-      multiply_by_transposed<3>(left, right, cols, result);
-      break;
-    default:
-      multiply_by_transposed<4>(left, right, cols, result);
-  }
-}
-
 /// Block q of a panel of A B^T.
 void multiply_by_transposed(const double* left, const PanelMatrix& b, Eigen::Index q, double* panel) {
-  multiply_by_transposed(std::min(height, b.rows() - height * q), left, b.panel(q), b.cols(),
-                         panel + height * height * q);
+  with_constant(std::min(height, b.rows() - height * q), [&](auto known) {
+    multiply_by_transposed<known>(left, b.panel(q), b.cols(), panel + height * height * q);
+  });
 }
 
 /// out (cols) += sign times the panels of M from `first` on, transposed, times w.
@@ -119,26 +111,10 @@ void add_block(const double* left, Eigen::Index stride, const double* right, Eig
   }
 }
 
-/// The same for a depth from 0 to 4 that the compiler does not know.
 template <int sign, bool fresh>
 void add_block(Eigen::Index depth, const double* left, Eigen::Index stride, const double* right,
                Eigen::Index cols, double* result) {
-  switch (depth) {
-    case 0:
-      add_block<0, sign, fresh>(left, stride, right, cols, result);
-      break;
-    case 1:
-      add_block<1, sign, fresh>(left, stride, right, cols, result);
-      break;
-    case 2:
-      add_block<2, sign, fresh>(left, stride, right, cols, result);
-      break;
-    case 3:
-      add_block<3, sign, fresh>(left, stride, right, cols, result);
-      break;
-    default:
-      add_block<4, sign, fresh>(left, stride, right, cols, result);
-  }
+  with_constant(depth, [&](auto known) { add_block<known, sign, fresh>(left, stride, right, cols, result); });
 }
 
 }  // namespace
