@@ -15,7 +15,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <functional>
+#include <vector>
 
 namespace tope::test {
 
@@ -59,14 +61,10 @@ struct Tasks {
   Posture rest;
 };
 
-/// While levels and targets change.
-double largest_jump_of_changes(LimitMethod method, Mode mode, int seed, double dt) {
-  Random random(seed);
-  Loop loop(youbot_before_obstacle(), {.mode = mode, .dt = dt, .limits = {.method = method}});
-  const Tasks tasks(random, loop.robot);
+/// Calls `observe` after each cycle while levels and targets change.
+template <typename Observe>
+void change_levels_and_targets(Loop& loop, const Tasks& tasks, Observe observe) {
   Controller& controller = loop.controller;
-  Jump jump(loop);
-  const auto observe = std::ref(jump);
   const TaskHandle turn = controller.add(1, tasks.turn);
   const TaskHandle reach = controller.add(2, tasks.reach);
   controller.add(4, tasks.rest);
@@ -79,8 +77,53 @@ double largest_jump_of_changes(LimitMethod method, Mode mode, int seed, double d
   loop.run(0.15, observe);
   controller.remove(turn, {.over = 0.2});  // while it moves
   loop.run(0.3, observe);
+}
+
+double largest_jump_of_changes(LimitMethod method, Mode mode, int seed, double dt) {
+  Random random(seed);
+  Loop loop(youbot_before_obstacle(), {.mode = mode, .dt = dt, .limits = {.method = method}});
+  const Tasks tasks(random, loop.robot);
+  Jump jump(loop);
+  change_levels_and_targets(loop, tasks, std::ref(jump));
   return jump.largest;
 }
+
+/// Controllers of velocity mode with the tasks of `change_levels_and_targets` as they never change.
+class Unchanging {
+ public:
+  Unchanging(const Loop& loop, const Tasks& tasks) : bound_(loop.robot.velocity_limit()) {
+    for (const FramePosition* reach : {&tasks.reach, &tasks.again}) {
+      for (const int reach_level : {1, 2}) {
+        for (const int turn_level : {0, 1, 2, 3}) {
+          Controller& controller = controllers_.emplace_back(loop.robot, loop.controller.options());
+          controller.add(reach_level, *reach);
+          controller.add(4, tasks.rest);
+          if (turn_level > 0) {
+            controller.add(turn_level, tasks.turn);
+          }
+        }
+      }
+    }
+    last_.assign(controllers_.size(), Vector::Zero(bound_.size()));
+  }
+
+  /// The largest jump of any of them since the last call, over each joint's bound.
+  double jump(const Loop& loop, const Vector& q) {
+    double largest = 0.0;
+    Vector u(bound_.size());
+    for (std::size_t i = 0; i < controllers_.size(); ++i) {
+      controllers_[i].update(q, loop.v, loop.t, u);
+      largest = std::max(largest, (u - last_[i]).cwiseQuotient(bound_).cwiseAbs().maxCoeff());
+      last_[i] = u;
+    }
+    return largest;
+  }
+
+ private:
+  Vector bound_;
+  std::deque<Controller> controllers_;
+  std::vector<Vector> last_;
+};
 
 }  // namespace
 
@@ -101,7 +144,7 @@ BOOST_AUTO_TEST_CASE(commands_stay_continuous) {
   }
 }
 
-// A slope that takes less than a millisecond shows at shorter periods only; two of the 24 are that steep.
+// A slope of a law that takes less than a millisecond shows at shorter periods only; two of the 24 are that steep.
 BOOST_AUTO_TEST_CASE(levels_and_targets_change_without_a_jump) {
   int steep = 0;
   for (const Mode mode : {Mode::velocity, Mode::torque}) {
@@ -122,6 +165,33 @@ BOOST_AUTO_TEST_CASE(levels_and_targets_change_without_a_jump) {
     }
   }
   BOOST_TEST(steep <= 2);
+}
+
+// Where the command is steepest on the way of such a change, a law whose tasks never change is steeper still: the steep
+// draws of the test above, where five joints are at bounds of their speed.
+BOOST_AUTO_TEST_CASE(a_change_adds_nothing_to_a_steep_slope) {
+  for (const int seed : {3, 5}) {
+    for (const double dt : {1e-3, 1e-4}) {
+      BOOST_TEST_CONTEXT("seed " << seed << ", period " << dt) {
+        Random random(seed);
+        Loop loop(youbot_before_obstacle(), {.dt = dt, .midpoint = false});
+        const Tasks tasks(random, loop.robot);
+        Unchanging unchanging(loop, tasks);
+        Jump jump(loop);
+        Vector q = loop.q;
+        double alone_there = 0.0;
+        change_levels_and_targets(loop, tasks, [&] {
+          const double before = jump.largest;
+          jump();
+          const double alone = unchanging.jump(loop, q);
+          alone_there = jump.largest > before ? alone : alone_there;
+          q = loop.q;
+        });
+        BOOST_TEST_MESSAGE("largest jump " << jump.largest << ", of a law alone " << alone_there);
+        BOOST_TEST(alone_there > jump.largest);
+      }
+    }
+  }
 }
 
 // A controller that always had the tasks like this gives the same command; at the measured state, as the middle of the
