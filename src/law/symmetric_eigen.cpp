@@ -1,3 +1,6 @@
+#include "jacobi_rotation.hpp"
+#include "symmetric_three.hpp"
+
 #include <tope/law/symmetric_eigen.hpp>
 
 #include <Eigen/Householder>
@@ -18,19 +21,14 @@ bool turn(Small& m, Small& v, double negligible) {
   if (!(std::abs(off) > negligible)) {
     return false;
   }
-  const double difference = m(q, q) - m(p, p);
-  const double radius = std::sqrt(difference * difference + 4.0 * off * off);
-  const double sum = std::abs(difference) + radius;
-  const double tangent = std::copysign(2.0, difference) * off / sum;  // of the smaller angle
-  const double cosine = std::sqrt(sum / (2.0 * radius));
-  const double sine = tangent * cosine;
-  const auto mix = [cosine, sine](double& first, double& second) {
+  const JacobiRotation rotation(m(q, q) - m(p, p), off);
+  const auto mix = [&rotation](double& first, double& second) {
     const double old = first;
-    first = cosine * old - sine * second;
-    second = sine * old + cosine * second;
+    first = rotation.cosine * old - rotation.sine * second;
+    second = rotation.sine * old + rotation.cosine * second;
   };
-  m(p, p) -= tangent * off;
-  m(q, q) += tangent * off;
+  m(p, p) -= rotation.tangent * off;
+  m(q, q) += rotation.tangent * off;
   m(q, p) = 0.0;
   for (int k = 0; k < Small::RowsAtCompileTime; ++k) {
     mix(v(k, p), v(k, q));
@@ -82,7 +80,7 @@ void SymmetricEigen::Solver::compute(const PanelMatrix& matrix) {
       rotate<2>();
       break;
     case 3:
-      rotate<3>();
+      split_off();
       break;
     case 4:
       rotate<4>();
@@ -90,6 +88,13 @@ void SymmetricEigen::Solver::compute(const PanelMatrix& matrix) {
     default:
       reduce();
   }
+}
+
+/// In closed form: half the time of rotations.
+void SymmetricEigen::Solver::split_off() {
+  const SymmetricThree three{Matrix3(reduced_)};
+  values_ = three.values();
+  vectors_ = three.vectors();
 }
 
 /// Jacobi's method: rotations, each of which makes one element zero, until all off the diagonal are.

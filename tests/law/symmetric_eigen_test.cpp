@@ -6,6 +6,8 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include <cmath>
+
 namespace tope::test {
 
 BOOST_AUTO_TEST_SUITE(symmetric_eigen)
@@ -35,6 +37,25 @@ BOOST_AUTO_TEST_CASE(decomposes_any_size_up_to_its_bound) {
       check(eigen, Matrix::Identity(size, size));
       check(eigen, Matrix::Zero(size, size));
       check(eigen, Matrix::Ones(size, size));
+    }
+  }
+}
+
+// Three rows go by a closed form: pairs and triples that are equal or nearly so, at either end, and values that vanish.
+BOOST_AUTO_TEST_CASE(decomposes_three_rows_wherever_their_values_lie) {
+  SymmetricEigen eigen(3);
+  Random random(11);
+  for (int i = 0; i < 5000; ++i) {
+    BOOST_TEST_CONTEXT("seed 11, matrix " << i) {
+      const double apart = std::pow(10.0, random.uniform(-16.0, 0.0));
+      const double value = random.uniform(0.1, 2.0);
+      const Matrix3 turn = random.rotation();
+      for (const Vector3& values : {Vector3(value, value * (1.0 + apart), value * (1.0 - apart)),
+                                    Vector3(0.0, apart, value), Vector3(value, value + apart, 3.0 * value),
+                                    Vector3(apart, value, value), Vector3(value, -value * apart, 0.0)}) {
+        check(eigen, turn * values.asDiagonal() * turn.transpose());
+        check(eigen, values.asDiagonal().toDenseMatrix());
+      }
     }
   }
 }

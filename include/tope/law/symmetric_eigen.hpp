@@ -8,8 +8,8 @@
 
 namespace tope {
 
-/// Eigen-decompositions of symmetric matrices of any size up to a bound, each with its memory reserved: by Jacobi's
-/// rotations up to four rows, the usual size of a task, and by Eigen's tridiagonal solver above.
+/// Eigen-decompositions of symmetric matrices of any size up to a bound, each with its memory reserved: in closed form for
+/// three rows, the usual size of a task, by Jacobi's rotations for one, two and four, and by Eigen's tridiagonal solver above.
 /// (Eigen's own compute() takes its workspace from the heap.)
 class SymmetricEigen {
  public:
@@ -24,6 +24,7 @@ class SymmetricEigen {
     const Matrix& eigenvectors() const { return vectors_; }  ///< one a column
 
    private:
+    void split_off();
     template <int size>
     void rotate();
     void reduce();

@@ -18,7 +18,7 @@ struct BenchmarkOptions {
 struct Benchmark {
   int states = 0;                       ///< that took part
   int largest_laws = 0;                 ///< laws evaluated in a cycle, at most
-  std::vector<double> cycle_us{};       ///< of each Controller::update
+  std::vector<double> cycle_us{};       ///< of each Controller::update: all states, again and again
   std::vector<double> rigid_body_us{};  ///< of each evaluation of the terms
 };
 

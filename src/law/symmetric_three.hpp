@@ -1,0 +1,91 @@
+#pragma once
+
+#include "jacobi_rotation.hpp"
+
+#include <tope/common/types.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tope {
+
+/// M = V diag(values) V^T for a symmetric 3 x 3 matrix, in closed form: the eigenvalue that stands apart from the other two,
+/// from the cubic; its vector; the other two in the plane across it, by one rotation (Eberly, A Robust Eigensolver for 3 x 3
+/// Symmetric Matrices, 2014). To rounding in the norm of M, wherever the eigenvalues lie.
+class SymmetricThree {
+ public:
+  explicit SymmetricThree(const Matrix3& m) {
+    const double mean = m.trace() / 3.0;
+    Matrix3 rest = m - mean * Matrix3::Identity();
+    const double spread = std::sqrt(rest.squaredNorm() / 6.0);
+    if (!(spread > 4.0 * std::numeric_limits<double>::epsilon() * std::abs(mean))) {
+      values_ = m.diagonal();
+      vectors_.setIdentity();
+      sort();
+      return;
+    }
+    rest *= 1.0 / spread;  // its eigenvalues are 2 cos of angles a third of a circle apart
+    const double cubic = 0.5 * rest.determinant();
+    const double apart =
+        std::copysign(2.0 * std::cos(std::acos(std::min(1.0, std::abs(cubic))) / 3.0), cubic);
+    split(rest, apart);
+    values_ = spread * values_ + Vector3::Constant(mean);
+    sort();
+  }
+
+  const Vector3& values() const { return values_; }    ///< in ascending order
+  const Matrix3& vectors() const { return vectors_; }  ///< one a column
+
+ private:
+  /// With the eigenvalue that stands apart.
+  void split(const Matrix3& m, double apart) {
+    const Vector3 axis = null_direction(m - apart * Matrix3::Identity());
+    // two directions across it (Duff et al., Building an Orthonormal Basis, Revisited, 2017)
+    const double sign = std::copysign(1.0, axis[2]);
+    const double a = -1.0 / (sign + axis[2]);
+    const double b = axis[0] * axis[1] * a;
+    const Vector3 first(1.0 + sign * axis[0] * axis[0] * a, sign * b, -sign * axis[0]);
+    const Vector3 second(b, sign + axis[1] * axis[1] * a, -axis[1]);
+    const Vector3 image = m * second;
+    const double low = first.dot(m * first);
+    const double high = second.dot(image);
+    const double off = first.dot(image);
+    const JacobiRotation turn(high - low, off);
+    values_ << low - turn.tangent * off, high + turn.tangent * off, apart;
+    vectors_.col(0) = turn.cosine * first - turn.sine * second;
+    vectors_.col(1) = turn.sine * first + turn.cosine * second;
+    vectors_.col(2) = axis;
+  }
+
+  /// Across all rows of a matrix of rank two: the longest of their products.
+  static Vector3 null_direction(const Matrix3& m) {
+    Vector3 longest = m.col(0).cross(m.col(1));
+    double square = longest.squaredNorm();
+    for (const Vector3& other : {Vector3(m.col(0).cross(m.col(2))), Vector3(m.col(1).cross(m.col(2)))}) {
+      if (other.squaredNorm() > square) {
+        longest = other;
+        square = other.squaredNorm();
+      }
+    }
+    return longest / std::sqrt(square);
+  }
+
+  void sort() {
+    order(0, 1);
+    order(1, 2);
+    order(0, 1);
+  }
+
+  void order(int i, int j) {
+    if (values_[i] > values_[j]) {
+      std::swap(values_[i], values_[j]);
+      vectors_.col(i).swap(vectors_.col(j));
+    }
+  }
+
+  Vector3 values_;
+  Matrix3 vectors_;
+};
+
+}  // namespace tope
