@@ -30,7 +30,15 @@ HEADER = (
     "their p99.9",
     "ratio",
 )
-TIMES = ("p50_us", "p99_us", "p999_us", "p999_undisturbed_us", "max_us", "rigid_body_us", "rigid_body_p999_us")
+TIMES = (
+    "p50_us",
+    "p99_us",
+    "p999_us",
+    "p999_undisturbed_us",
+    "max_us",
+    "rigid_body_us",
+    "rigid_body_p999_us",
+)
 
 
 @dataclass(frozen=True)

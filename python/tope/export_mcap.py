@@ -27,7 +27,7 @@ def write(run: Run, file: Path) -> None:
 
     /robot_description (URDF), /joint_states, /joint_commands, /tf and /tf_static (every link under the
     robot's first), /goal/<frame> where tasks want a frame, and /diagnostics: status, scale, activations of
-    limits, norms of task errors, wheels.
+    limits and tasks, task errors, distances, wheels, sensors.
     """
     tree = read_tree(run)
     positions = joint_positions(run, run.time)
@@ -135,8 +135,8 @@ def poses(tree: RobotTree, goal: Goal, stamps: Sequence[Mapping[str, int]]) -> I
 
 
 def diagnostics(run: Run, stamps: Sequence[Mapping[str, int]]) -> Iterator[Message]:
-    """A DiagnosticArray for each row: the controller's status, and how far limits act."""
-    columns = [name for name in run.log if name == "scale" or name.startswith(("xi.", "e.", "a.", "wheel."))]
+    """A DiagnosticArray for each row: the controller's status, and columns that no other topic carries."""
+    columns = [name for name in run.log if name not in ("t", "status") and name[:2] not in ("q.", "v.", "u.")]
     values = np.stack([run.log[name] for name in columns], axis=1).tolist()
     for time, row, status in zip(stamps, values, run.log["status"].tolist(), strict=True):
         entry = {

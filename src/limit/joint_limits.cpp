@@ -76,21 +76,29 @@ bool JointLimits::move(int joint, const LimitMotion& motion) {
   return true;
 }
 
-void JointLimits::update(const VectorArg& q, Part part) {
+/// Fills what is asked for, joint by joint, from the distances to the upper and the lower limit.
+template <typename FillRow, typename FillBounds>
+void JointLimits::fill(const VectorArg& q, Part part, FillRow row, FillBounds bounds) {
   beyond_ = -1;
   furthest_beyond_ = 0.0;
-  engagement_slack_ = gain_.cwiseProduct(buffer_);
   for (int j = 0; j < size(); ++j) {
     const double to_upper = upper_[j] - q[j];
     const double to_lower = q[j] - lower_[j];
     note_beyond(j, std::min(to_upper, to_lower));
     if (part != Part::bounds) {
-      fill_row(j, to_upper, to_lower);
+      row(j, to_upper, to_lower);
     }
     if (part != Part::rows) {
-      fill_bounds(j, to_upper, to_lower);
+      bounds(j, to_upper, to_lower);
     }
   }
+}
+
+void JointLimits::update(const VectorArg& q, Part part) {
+  fill(
+      q, part, [this](int j, double to_upper, double to_lower) { fill_row(j, to_upper, to_lower); },
+      [this](int j, double to_upper, double to_lower) { fill_bounds(j, to_upper, to_lower); });
+  engagement_slack_ = gain_.cwiseProduct(buffer_);
 }
 
 void JointLimits::fill_row(int j, double to_upper, double to_lower) {
@@ -158,21 +166,16 @@ double JointLimits::allowed_acceleration(const Envelope& allowed, double recedin
 }
 
 void JointLimits::update_second_order(const VectorArg& q, const VectorArg& v, Part part) {
-  beyond_ = -1;
-  furthest_beyond_ = 0.0;
-  for (int j = 0; j < size(); ++j) {
-    const double to_upper = upper_[j] - q[j];
-    const double to_lower = q[j] - lower_[j];
-    note_beyond(j, std::min(to_upper, to_lower));
-    if (part != Part::bounds && options_.measure == Measure::predicted) {
-      fill_predicted_row(j, to_upper, to_lower, v[j]);
-    } else if (part != Part::bounds) {
-      fill_position_row(j, to_upper, to_lower, v[j]);
-    }
-    if (part != Part::rows) {
-      fill_acceleration_bounds(j, to_upper, to_lower, v[j]);
-    }
-  }
+  const bool predicted = options_.measure == Measure::predicted;
+  fill(
+      q, part,
+      [&](int j, double to_upper, double to_lower) {
+        predicted ? fill_predicted_row(j, to_upper, to_lower, v[j])
+                  : fill_position_row(j, to_upper, to_lower, v[j]);
+      },
+      [&](int j, double to_upper, double to_lower) {
+        fill_acceleration_bounds(j, to_upper, to_lower, v[j]);
+      });
   engagement_slack_ = options_.servo_gain * gain_.cwiseProduct(buffer_);
 }
 

@@ -145,9 +145,26 @@ def test_diagnostics_hold_status_scale_activations_errors_and_wheels(topics, run
     assert [each.level for each in statuses] == [int(flags != "ok") for flags in run.log["status"]]
     values = [{pair.key: float(pair.value) for pair in each.values} for each in statuses]
     expected = {name for name in run.log if name.startswith(("xi.", "e.", "wheel."))} | {"scale"}
+    assert len(expected) > 20
     assert set(values[0]) == expected
     for name in expected:
         np.testing.assert_array_equal([each[name] for each in values], run.log[name])
+
+
+@pytest.mark.parametrize(
+    ("scenario", "overrides", "prefix"),
+    [("youbot_obstacle", {}, "d."), ("youbot_experiment_velocity", {}, "measured.")],
+)
+def test_diagnostics_hold_what_a_run_logs_besides(tmp_path, scenario, overrides, prefix):
+    overrides = {"duration": 0.05, **overrides}
+    simulate(ROOT / f"scenarios/{scenario}.yaml", out=tmp_path, overrides=overrides, report=False)
+    [*_, (_, last)] = read_mcap(export(tmp_path, to="mcap"))["/diagnostics"]
+    values = {pair.key: float(pair.value) for pair in last.status[0].values}
+    expected = {
+        name: column[-1] for name, column in load_run(tmp_path).log.items() if name.startswith(prefix)
+    }
+    assert expected
+    assert {name: values[name] for name in expected} == expected
 
 
 def test_mcap_holds_summary_and_urdf(topics, folder, run):

@@ -132,6 +132,8 @@ class JointLimits {
   double upper_receding(int joint) const { return upper_rate_[joint]; }
   double lower_receding(int joint) const { return -lower_rate_[joint]; }
   double range_needed(int joint) const;
+  template <typename FillRow, typename FillBounds>
+  void fill(const VectorArg& q, Part part, FillRow row, FillBounds bounds);
   void fill_row(int j, double to_upper, double to_lower);
   void fill_bounds(int j, double to_upper, double to_lower);
   void fill_predicted_row(int j, double to_upper, double to_lower, double speed);
