@@ -171,42 +171,6 @@ void Cholesky::whiten_panel(double* panel, Eigen::Index cols) const {
   }
 }
 
-void Cholesky::whiten_twice(PanelMatrix& m) const {
-  whiten(m);
-  for (Eigen::Index p = 0; p < m.panels(); ++p) {
-    double* panel = m.panel(p);
-    for (Eigen::Index j = 0; j < m.cols(); ++j) {
-      Column now = column(panel, j);
-      for (Eigen::Index k = 0; k < j; ++k) {
-        now -= lower_(j, k) * column(panel, k);
-      }
-      column(panel, j) = now;
-    }
-    scale_columns(panel);
-  }
-}
-
-void Cholesky::whiten_across(PanelMatrix& x) const {
-  for (Eigen::Index p = 0; p < x.panels(); ++p) {
-    double* panel = x.panel(p);
-    scale_columns(panel);
-    for (Eigen::Index j = x.cols() - 1; j >= 0; --j) {
-      Column now = column(panel, j);
-      for (Eigen::Index k = j + 1; k < x.cols(); ++k) {
-        now -= lower_(k, j) * column(panel, k);
-      }
-      column(panel, j) = now;
-    }
-  }
-}
-
-/// X <- X D^-1/2, one panel of X.
-void Cholesky::scale_columns(double* panel) const {
-  for (Eigen::Index j = 0; j < size(); ++j) {
-    column(panel, j) *= std::sqrt(inverse_pivots_[j]);
-  }
-}
-
 void Cholesky::invert_factor(PanelMatrix& out) const {
   out.set_identity(lower_.rows());
   for (Eigen::Index j = 0; j < out.cols(); ++j) {

@@ -180,7 +180,7 @@ void Hierarchy::add_known(HierarchyLevel& level, Solution& solution) {
   if (level.clear()) {
     add_clear(level, false);
   } else {
-    minimise_damped(level.decompose(eigen_), level.projected());
+    minimise_by_rows(level);
     solution.singular = true;
   }
 }
@@ -300,11 +300,17 @@ void Hierarchy::add_clear(const HierarchyLevel& level, bool to_be_closed) {
 
 /// By the spectrum of G, of which some rho <= rho_0.
 void Hierarchy::add_by_rows(HierarchyLevel& level, bool last) {
-  RowSpectrum& spectrum = level.decompose(eigen_);
-  minimise_damped(spectrum, level.projected());
+  const RowSpectrum& spectrum = minimise_by_rows(level);
   if (!last) {
     close_shares(spectrum);
   }
+}
+
+const RowSpectrum& Hierarchy::minimise_by_rows(HierarchyLevel& level) {
+  RowSpectrum& spectrum = level.decompose(eigen_);
+  level.metric().whiten(residual_.data());
+  minimise_damped(spectrum, level.projected());
+  return spectrum;
 }
 
 /// Where there are as many rows as open directions or more. True when every rho > rho_0.

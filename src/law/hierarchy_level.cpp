@@ -14,7 +14,7 @@ HierarchyLevel::HierarchyLevel(int n, int max_rows)
       directions_(Matrix::Zero(PanelMatrix::padded(n), n)),
       along_(Vector::Zero(PanelMatrix::padded(max_rows))),
       weights_(along_),
-      square_(max_rows, max_rows) {}
+      excess_(max_rows, max_rows) {}
 
 void HierarchyLevel::gather(const Stack& stack, const Selection& selection, std::size_t first) {
   given_.gather(stack, selection, first);
@@ -47,6 +47,7 @@ void HierarchyLevel::start(int closed_before) {
 
 void HierarchyLevel::project(const PanelMatrix& rows, ClosedRows& closed) {
   by_rows_ = true;
+  whitened_ = false;
   decomposed_ = false;
   if (closed.size() > 0) {
     closed.project(rows, projected_);
@@ -62,6 +63,7 @@ void HierarchyLevel::project(const PanelMatrix& rows, ClosedRows& closed) {
 
 void HierarchyLevel::set_projected(const PanelMatrix& in_basis) {
   by_rows_ = false;
+  whitened_ = false;
   decomposed_ = false;
   if (&in_basis != &projected_) {
     projected_.assign(in_basis);
@@ -95,17 +97,19 @@ bool HierarchyLevel::close(double* direction, double damped_below) {
 }
 
 bool HierarchyLevel::factorise(double damped_below) {
-  subtract(gram_, damped_below, metric_, square_);
-  clear_ = clear_factor_.factorise(square_) && factor_.factorise(gram_);
+  subtract(gram_, damped_below, metric_, excess_);
+  clear_ = clear_factor_.factorise(excess_) && factor_.factorise(gram_);
   return clear_;
 }
 
 RowSpectrum& HierarchyLevel::decompose(SymmetricEigen& eigen) {
+  if (!whitened_) {
+    metric().whiten(projected_);
+    multiply_rows(projected_, gram_);
+    whitened_ = true;
+  }
   if (!decomposed_) {
-    make_symmetric(gram_);
-    square_.assign(gram_);
-    metric().whiten_twice(square_);
-    spectrum_.compute(metric(), projected_, square_, eigen);
+    spectrum_.compute(projected_, gram_, eigen);
     decomposed_ = true;
   }
   return spectrum_;

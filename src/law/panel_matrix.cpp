@@ -234,14 +234,6 @@ void multiply_columns(const PanelMatrix& m, PanelMatrix& out) {
   }
 }
 
-void make_symmetric(PanelMatrix& m) {
-  for (Eigen::Index j = 0; j < m.cols(); ++j) {
-    for (Eigen::Index i = 0; i < j; ++i) {
-      m(i, j) = m(j, i);
-    }
-  }
-}
-
 void scale(PanelMatrix& m, double factor) {
   for (Eigen::Index p = 0; p < m.panels(); ++p) {
     double* panel = m.panel(p);

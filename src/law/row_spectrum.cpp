@@ -26,14 +26,6 @@ void RowSpectrum::compute(const PanelMatrix& k, const PanelMatrix& gram, Symmetr
   }
 }
 
-void RowSpectrum::compute(const Cholesky& metric, const PanelMatrix& a, const PanelMatrix& gram,
-                          SymmetricEigen& eigen) {
-  by_rows_ = true;
-  decompose(gram, eigen, left_);
-  metric.whiten_across(left_);
-  multiply(left_, a, directions_);
-}
-
 /// Values, and vectors as rows.
 void RowSpectrum::decompose(const PanelMatrix& gram, SymmetricEigen& eigen, PanelMatrix& vectors) {
   vectors.resize_for_rows(gram.rows(), gram.rows());

@@ -66,6 +66,10 @@ SymmetricEigen::Solver::Solver(Eigen::Index size)
       vectors_(Matrix::Identity(size, size)) {}
 
 void SymmetricEigen::Solver::compute(const PanelMatrix& matrix) {
+  if (values_.size() == 3) {
+    split_off(matrix);
+    return;
+  }
   for (Eigen::Index j = 0; j < values_.size(); ++j) {
     for (Eigen::Index i = j; i < values_.size(); ++i) {
       reduced_(i, j) = matrix(i, j);
@@ -79,9 +83,6 @@ void SymmetricEigen::Solver::compute(const PanelMatrix& matrix) {
     case 2:
       rotate<2>();
       break;
-    case 3:
-      split_off();
-      break;
     case 4:
       rotate<4>();
       break;
@@ -91,10 +92,17 @@ void SymmetricEigen::Solver::compute(const PanelMatrix& matrix) {
 }
 
 /// In closed form: half the time of rotations.
-void SymmetricEigen::Solver::split_off() {
-  const SymmetricThree three{Matrix3(reduced_)};
-  values_ = three.values();
-  vectors_ = three.vectors();
+void SymmetricEigen::Solver::split_off(const PanelMatrix& matrix) {
+  Matrix3 m;
+  for (Eigen::Index j = 0; j < 3; ++j) {
+    for (Eigen::Index i = j; i < 3; ++i) {
+      m(i, j) = matrix(i, j);
+      m(j, i) = matrix(i, j);
+    }
+  }
+  const SymmetricThree three(m);
+  values_.head<3>() = three.values();
+  vectors_.topLeftCorner<3, 3>() = three.vectors();
 }
 
 /// Jacobi's method: rotations, each of which makes one element zero, until all off the diagonal are.

@@ -38,19 +38,6 @@ void check(Cholesky& cholesky, const Matrix& m, double shift, Random& random) {
   columns.copy_to(whitened);
   BOOST_TEST((factor * whitened - several).norm() <= 1e-12 * (1.0 + several.norm()));
 
-  const Matrix symmetric = several * several.transpose();
-  PanelMatrix twice(symmetric);
-  cholesky.whiten_twice(twice);
-  whitened = Matrix(size, size);
-  twice.copy_to(whitened);
-  BOOST_TEST((factor * whitened * factor.transpose() - symmetric).norm() <= 1e-12 * (1.0 + symmetric.norm()));
-  const Matrix wide = several.transpose();
-  PanelMatrix across(wide);
-  cholesky.whiten_across(across);
-  whitened = Matrix(5, size);
-  across.copy_to(whitened);
-  BOOST_TEST((whitened * factor - wide).norm() <= 1e-12 * (1.0 + wide.norm()));
-
   PanelMatrix inverse(40, 40);
   cholesky.invert_factor(inverse);
   Matrix dense(size, size);

@@ -20,10 +20,6 @@ class Cholesky {
   void whiten(double* x) const;
   /// X <- C^-1 X (m x any).
   void whiten(PanelMatrix& x) const;
-  /// M <- C^-1 M C^-T (m x m).
-  void whiten_twice(PanelMatrix& m) const;
-  /// X <- X C^-1 (any x m).
-  void whiten_across(PanelMatrix& x) const;
   /// out = C^-1 (m x m), zeros above its diagonal.
   void invert_factor(PanelMatrix& out) const;
 
@@ -31,7 +27,6 @@ class Cholesky {
   void finish_panel(Eigen::Index p, Eigen::Index block);
   void forward(double* x, Eigen::Index stride, Eigen::Index first) const;
   void whiten_panel(double* panel, Eigen::Index cols) const;
-  void scale_columns(double* panel) const;
   void scale_rows(PanelMatrix& x) const;
 
   PanelMatrix lower_;      // L below its diagonal, zeros on it and above in the same panel

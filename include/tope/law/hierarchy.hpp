@@ -59,6 +59,7 @@ class Hierarchy final : public StackLaw {
   void project(HierarchyLevel& level);
   void add_clear(const HierarchyLevel& level, bool to_be_closed);
   void add_by_rows(HierarchyLevel& level, bool last);
+  const RowSpectrum& minimise_by_rows(HierarchyLevel& level);
   bool add_by_columns(HierarchyLevel& level, bool plain, bool last);
   void whiten_columns(HierarchyLevel& level, bool plain);
   void minimise();

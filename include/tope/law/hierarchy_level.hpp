@@ -38,14 +38,15 @@ class HierarchyLevel {
   /// clear leaves a part, of length one again.
   bool close(double* direction, double damped_below);
 
-  /// A N (m x n) or A Z (m x d).
+  /// A N (m x n) or A Z (m x d); L^-1 of it from decompose() on.
   const PanelMatrix& projected() const { return projected_; }
   /// Factorises A N A^T; true when every rho > rho_0, which is `damped_below`.
   bool factorise(double damped_below);
   /// What factorise() found last, of A N and not of A Z.
   bool clear() const { return by_rows_ && clear_; }
   const Cholesky& factor() const { return factor_; }  ///< of A N A^T, where that was so
-  /// The spectrum rho of G = L^-1 A N A^T L^-T, with the directions N A^T L^-T v.
+  /// The spectrum rho of G = L^-1 A N A^T L^-T, with the directions N A^T L^-T v. The level is damped: directions closed above
+  /// leave it so.
   RowSpectrum& decompose(SymmetricEigen& eigen);
 
   /// Rows that were closed above at start(), and directions that close() has closed since.
@@ -62,11 +63,12 @@ class HierarchyLevel {
   bool factorised_ = false;
 
   PanelMatrix projected_;
-  PanelMatrix gram_;      // A N A^T, the lower triangle
+  PanelMatrix gram_;      // of projected_, the lower triangle
   bool by_rows_ = false;  // projected_ is A N, and gram_ is known
   Cholesky clear_factor_;
   Cholesky factor_;
   bool clear_ = false;
+  bool whitened_ = false;
   RowSpectrum spectrum_;
   bool decomposed_ = false;
 
@@ -75,7 +77,7 @@ class HierarchyLevel {
   Matrix directions_;   // those closed since, one a column (padded)
   Vector along_;        // A N m, for the direction m that is being closed (m, padded)
   Vector weights_;      // (A N A^T)^-1 of it
-  PanelMatrix square_;  // (m x m), for what is not kept
+  PanelMatrix excess_;  // A N A^T - rho_0 B
 };
 
 }  // namespace tope

@@ -160,8 +160,6 @@ void subtract_product(const PanelMatrix& a, const PanelMatrix& b, const PanelMat
 void multiply_rows(const PanelMatrix& m, PanelMatrix& out);
 /// The lower triangle of M^T M.
 void multiply_columns(const PanelMatrix& m, PanelMatrix& out);
-/// Copies a square matrix's lower triangle above its diagonal.
-void make_symmetric(PanelMatrix& m);
 /// M <- factor M.
 void scale(PanelMatrix& m, double factor);
 /// out = A - scale B.

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <tope/law/cholesky.hpp>
 #include <tope/law/panel_matrix.hpp>
 #include <tope/law/symmetric_eigen.hpp>
 
@@ -15,14 +14,12 @@ class RowSpectrum {
 
   /// `gram`: lower triangle of K K^T if m < d, of K^T K otherwise.
   void compute(const PanelMatrix& k, const PanelMatrix& gram, SymmetricEigen& eigen);
-  /// Of K = C^-1 A (m < d) for a factor C of `metric`; `gram`: lower triangle of K K^T.
-  void compute(const Cholesky& metric, const PanelMatrix& a, const PanelMatrix& gram, SymmetricEigen& eigen);
 
   int size() const { return static_cast<int>(directions_.rows()); }
   double squared(int i) const { return squared_[i]; }  ///< sigma_i^2
   /// sigma_i v_i, one a row (size x d).
   const PanelMatrix& directions() const { return directions_; }
-  /// out[i] = u_i^T r (padded), for r (padded(m)) and the K of compute(); or u_i^T C^-1 r, for the A of compute().
+  /// out[i] = u_i^T r (padded), for r (padded(m)) and the K of compute().
   void components(const PanelMatrix& k, const Vector& r, Vector& out);
 
  private:
@@ -30,7 +27,7 @@ class RowSpectrum {
 
   bool by_rows_ = false;
   Vector squared_;
-  PanelMatrix left_;  // u_i^T or u_i^T C^-1, one a row
+  PanelMatrix left_;  // u_i^T, one a row
   PanelMatrix directions_;
   Vector projected_;  // K^T r
 };

@@ -24,7 +24,7 @@ class SymmetricEigen {
     const Matrix& eigenvectors() const { return vectors_; }  ///< one a column
 
    private:
-    void split_off();
+    void split_off(const PanelMatrix& matrix);
     template <int size>
     void rotate();
     void reduce();
