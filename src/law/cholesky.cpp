@@ -130,9 +130,10 @@ void Cholesky::solve(double* x) const {
                     column(panel, 3).dot(known));
     }
     const double* diagonal = lower_.panel(p) + height * height * p;
-    now[2] -= column(diagonal, 2).dot(now);
-    now[1] -= column(diagonal, 1).dot(now);
-    now[0] -= column(diagonal, 0).dot(now);
+    const auto l = [diagonal](Eigen::Index i, Eigen::Index j) { return diagonal[height * j + i]; };
+    now[2] -= l(3, 2) * now[3];  // number by number, as each waits for the one before
+    now[1] = (now[1] - l(3, 1) * now[3]) - l(2, 1) * now[2];
+    now[0] = ((now[0] - l(3, 0) * now[3]) - l(2, 0) * now[2]) - l(1, 0) * now[1];
     column(x, p) = now;
   }
 }

@@ -58,6 +58,7 @@ Hierarchy::Hierarchy(const Stack& stack, const Options& options)
     }
     levels_.emplace_back(stack.size(), static_cast<int>(rows));
     ranges_.push_back({first, last});
+    empty_.push_back(1);
     first = last;
   }
 }
@@ -76,8 +77,7 @@ void Hierarchy::solve(const Stack& stack, const Selection& selection, Solution& 
 
 void Hierarchy::solve(const Stack& stack, const Selection& selection, const Vector& limit_target,
                       Solution& solution) {
-  solution.set_zero();
-  solution.laws = 1;
+  solution.begin();
   select_tasks(selection);
   hold_limits(stack, selection);
   limits_.meet(limit_target, y_);
@@ -91,7 +91,7 @@ void Hierarchy::solve(const Stack& stack, const Selection& selection, const Vect
   const std::size_t known = shared_;
   shared_ = needs_basis_ ? 0 : levels_.size();
   for (std::size_t i = 0; i < levels_.size(); ++i) {
-    if (empty(i)) {
+    if (empty_[i] != 0) {
       continue;
     }
     if (!levels_[i].ready()) {
@@ -113,21 +113,18 @@ void Hierarchy::select_tasks(const Selection& selection) {
     return;
   }
   for (std::size_t i = 0; i < levels_.size(); ++i) {
+    empty_[i] = 1;
     for (std::size_t task = ranges_[i].first; task < ranges_[i].last; ++task) {
       if (selection.tasks[task] != tasks_[task]) {
         levels_[i].forget();
+      }
+      if (selection.tasks[task] != 0) {
+        empty_[i] = 0;
       }
     }
   }
   tasks_ = selection.tasks;
   shared_ = 0;
-}
-
-/// True when none of a level's tasks is selected.
-bool Hierarchy::empty(std::size_t level) const {
-  const auto first = tasks_.begin() + static_cast<std::ptrdiff_t>(ranges_[level].first);
-  const auto last = tasks_.begin() + static_cast<std::ptrdiff_t>(ranges_[level].last);
-  return std::find(first, last, 1) == last;
 }
 
 /// Level 0. The selections of a chain grow: what is held already stays.
@@ -147,7 +144,7 @@ void Hierarchy::hold_limits(const Stack& stack, const Selection& selection) {
 void Hierarchy::close_in_shared_levels(const Vector& direction) {
   step_ = direction;
   for (std::size_t i = 0; i < shared_; ++i) {
-    if (empty(i)) {
+    if (empty_[i] != 0) {
       continue;
     }
     if (!levels_[i].close(step_.data(), options_.damped_below)) {

@@ -80,17 +80,33 @@ void multiply_by_transposed(const double* left, const PanelMatrix& b, Eigen::Ind
   });
 }
 
+/// out (cols) (+)= one panel's transpose times weights, two columns at once.
+template <bool fresh>
+void add_transposed(const double* panel, Eigen::Index cols, const Column& weights, double* out) {
+  const auto half = [&](Eigen::Index j) -> Eigen::Vector2d {
+    const Column products = column(panel, j).cwiseProduct(weights);
+    return products.head<2>() + products.tail<2>();
+  };
+  Eigen::Index j = 0;
+  for (; j + 1 < cols; j += 2) {
+    const Eigen::Vector2d first = half(j);
+    const Eigen::Vector2d second = half(j + 1);
+    Eigen::Map<Eigen::Vector2d> sums(out + j);
+    const Eigen::Vector2d both = Eigen::Vector2d(first[0], second[0]) + Eigen::Vector2d(first[1], second[1]);
+    sums = fresh ? both : (sums + both).eval();
+  }
+  if (j < cols) {
+    out[j] = (fresh ? 0.0 : out[j]) + half(j).sum();
+  }
+}
+
 /// out (cols) += sign times the panels of M from `first` on, transposed, times w.
 void add_transposed_panels(const PanelMatrix& m, Eigen::Index first, double sign, const double* w,
                            double* out) {
   const Eigen::Index panels = m.panels();
   const Eigen::Index cols = m.cols();
   for (Eigen::Index p = first; p < panels; ++p) {
-    const double* panel = m.panel(p);
-    const Column weights = sign * column(w, p);
-    for (Eigen::Index j = 0; j < cols; ++j) {
-      out[j] += column(panel, j).dot(weights);
-    }
+    add_transposed<false>(m.panel(p), cols, sign * column(w, p), out);
   }
 }
 
@@ -167,11 +183,7 @@ void multiply_transposed(const PanelMatrix& m, const double* w, double* out) {
     std::fill(out, out + m.cols(), 0.0);
     return;
   }
-  const double* panel = m.panel(0);
-  const Column weights = column(w, 0);
-  for (Eigen::Index j = 0; j < m.cols(); ++j) {
-    out[j] = column(panel, j).dot(weights);
-  }
+  add_transposed<true>(m.panel(0), m.cols(), column(w, 0), out);
   add_transposed_panels(m, 1, 1.0, w, out);
 }
 

@@ -41,11 +41,16 @@ void Selection::assign_present(const Stack& stack, const Selection& entered) {
 }
 
 void Solution::set_zero() {
+  begin();
   y.setZero();
   y_limits.setZero();
+  laws = 0;
+}
+
+void Solution::begin() {
   singular = false;
   cut_off = false;
-  laws = 0;
+  laws = 1;
 }
 
 void Solution::add(double weight, const Solution& other) {

@@ -45,7 +45,6 @@ class Hierarchy final : public StackLaw {
   };
 
   void select_tasks(const Selection& selection);
-  bool empty(std::size_t level) const;
   void hold_limits(const Stack& stack, const Selection& selection);
   void close_in_shared_levels(const Vector& direction);
   void prepare(const Stack& stack, const Selection& selection, std::size_t first, HierarchyLevel& level);
@@ -75,6 +74,7 @@ class Hierarchy final : public StackLaw {
 
   HeldLimits limits_;
   std::vector<char> tasks_;  // of the selection before
+  std::vector<char> empty_;  // levels of which it has no task
   // Levels, from the highest, of which A N is known from that selection. All above the last of them are clear, or damped and
   // not moved by any row that was added.
   std::size_t shared_ = 0;

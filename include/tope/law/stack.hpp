@@ -62,6 +62,8 @@ struct Solution {
   int laws = 0;           ///< laws evaluated
 
   void set_zero();
+  /// Of one law that tells its y and y_limits later.
+  void begin();
   /// Adds weight times another solution; flags and counts accumulate.
   void add(double weight, const Solution& other);
 };
