@@ -18,18 +18,18 @@ class SymmetricThree {
  public:
   explicit SymmetricThree(const Matrix3& m) {
     const double mean = m.trace() / 3.0;
-    Matrix3 rest = m - mean * Matrix3::Identity();
-    const double spread = std::sqrt(rest.squaredNorm() / 6.0);
-    if (!(spread > 4.0 * std::numeric_limits<double>::epsilon() * std::abs(mean))) {
-      values_ = m.diagonal();
+    const Matrix3 rest = m - mean * Matrix3::Identity();
+    const double square = rest.squaredNorm() / 6.0;
+    const double spread = std::sqrt(square);
+    constexpr double least = 1e-60;  // the fourth power of much less is zero
+    if (spread > std::max(least, 4.0 * std::numeric_limits<double>::epsilon() * std::abs(mean))) {
+      // eigenvalues over the spread are 2 cos of angles a third of a circle apart
+      split(rest, spread * apart(0.5 * rest.determinant() / (square * spread)));
+    } else {
+      values_.setZero();
       vectors_.setIdentity();
-      sort();
-      return;
     }
-    rest *= 1.0 / spread;  // its eigenvalues are 2 cos of angles a third of a circle apart
-    split(rest, apart(0.5 * rest.determinant()));
-    values_ = spread * values_ + Vector3::Constant(mean);
-    sort();
+    values_.array() += mean;
   }
 
   const Vector3& values() const { return values_; }    ///< in ascending order
@@ -59,14 +59,17 @@ class SymmetricThree {
     const Vector3 first(1.0 + sign * axis[0] * axis[0] * a, sign * b, -sign * axis[0]);
     const Vector3 second(b, sign + axis[1] * axis[1] * a, -axis[1]);
     const Vector3 image = m * second;
-    const double low = first.dot(m * first);
-    const double high = second.dot(image);
+    const double before = first.dot(m * first);
+    const double after = second.dot(image);
     const double off = first.dot(image);
-    const JacobiRotation turn(high - low, off);
-    values_ << low - turn.tangent * off, high + turn.tangent * off, apart;
+    const JacobiRotation turn(after - before, off);
+    values_ << before - turn.tangent * off, after + turn.tangent * off, apart;
     vectors_.col(0) = turn.cosine * first - turn.sine * second;
     vectors_.col(1) = turn.sine * first + turn.cosine * second;
     vectors_.col(2) = axis;
+    order(0, 1);
+    order(1, 2);
+    order(0, 1);
   }
 
   /// Across all rows of a matrix of rank two: the longest of their products.
@@ -80,12 +83,6 @@ class SymmetricThree {
       }
     }
     return longest / std::sqrt(square);
-  }
-
-  void sort() {
-    order(0, 1);
-    order(1, 2);
-    order(0, 1);
   }
 
   void order(int i, int j) {

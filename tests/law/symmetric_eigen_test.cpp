@@ -55,6 +55,7 @@ BOOST_AUTO_TEST_CASE(decomposes_three_rows_wherever_their_values_lie) {
                                     Vector3(apart, value, value), Vector3(value, -value * apart, 0.0)}) {
         check(eigen, turn * values.asDiagonal() * turn.transpose());
         check(eigen, values.asDiagonal().toDenseMatrix());
+        check(eigen, std::pow(apart, 10) * turn * values.asDiagonal() * turn.transpose());
       }
     }
   }
