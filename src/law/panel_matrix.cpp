@@ -135,6 +135,22 @@ void add_block(Eigen::Index depth, const double* left, Eigen::Index stride, cons
 
 }  // namespace
 
+void PanelMatrix::assign_transposed(const Matrix& m) {
+  resize(m.cols(), m.rows());
+  for (Eigen::Index p = 0; p < panels(); ++p) {
+    with_constant(std::min(height, rows_ - height * p), [&](auto known) {
+      const double* from = m.data() + height * p * m.rows();
+      for (Eigen::Index j = 0; j < cols_; ++j) {
+        Column now = Column::Zero();  // whole columns, as they are read whole at once
+        for (int i = 0; i < known; ++i) {
+          now[i] = from[m.rows() * i + j];
+        }
+        column(panel(p), height * j) = now;
+      }
+    });
+  }
+}
+
 void PanelMatrix::set_rows(Eigen::Index first, const Matrix& m) {
   Eigen::Index run = 0;  // rows within one panel
   for (Eigen::Index i = 0; i < m.rows(); i += run) {

@@ -28,13 +28,13 @@ void RowSpectrum::compute(const PanelMatrix& k, const PanelMatrix& gram, Symmetr
 
 /// Values, and vectors as rows.
 void RowSpectrum::decompose(const PanelMatrix& gram, SymmetricEigen& eigen, PanelMatrix& vectors) {
-  vectors.resize_for_rows(gram.rows(), gram.rows());
   if (gram.rows() == 0) {
+    vectors.resize(0, 0);
     return;
   }
   const SymmetricEigen::Solver& solver = eigen.compute(gram);
   squared_.head(gram.rows()) = solver.eigenvalues().cwiseMax(0.0);
-  vectors.set_rows(0, solver.eigenvectors().transpose());
+  vectors.assign_transposed(solver.eigenvectors());
 }
 
 void RowSpectrum::components(const PanelMatrix& k, const Vector& r, Vector& out) {

@@ -83,6 +83,13 @@ void check(Random& random, int rows, int cols) {
   BOOST_TEST((dense(difference) + 1.4 * m).norm() <= close);
   difference.assign(panels);
   BOOST_TEST((dense(difference) - m).norm() == 0.0);
+  PanelMatrix transposed = used(random, random.matrix(static_cast<int>(PanelMatrix::padded(cols)), rows));
+  transposed.assign_transposed(m);
+  BOOST_TEST((dense(transposed) - m.transpose()).norm() == 0.0);
+  const Vector sums = Vector::Ones(PanelMatrix::padded(rows));
+  Vector of_columns = Vector::Ones(PanelMatrix::padded(cols));
+  multiply(transposed, sums.data(), of_columns.data());
+  check_rest_is_zero(of_columns, cols);
 
   const Vector down = random.vector(rows);
   subtract_outer(difference, padded(down).data(), x.data());

@@ -54,6 +54,8 @@ class PanelMatrix {
       }
     }
   }
+  /// Becomes the transpose of m, which fits into what is reserved.
+  void assign_transposed(const Matrix& m);
   /// Keeps the columns from `count` on.
   void drop_front(Eigen::Index count) {
     first_ += count;
