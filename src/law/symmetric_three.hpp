@@ -37,7 +37,7 @@ class SymmetricThree {
 
  private:
   /// The root of x^3 - 3 x = 2 c (|c| <= 1) that is furthest from zero, between sqrt 3 and 2 in size: two of Halley's steps
-  /// from the chord leave rounding alone, and take half the time of 2 cos(acos(c) / 3).
+  /// from the chord leave rounding alone, and take less time than 2 cos(acos(c) / 3).
   static double apart(double c) {
     const double size = std::min(1.0, std::abs(c));
     double x = std::numbers::sqrt3 + (2.0 - std::numbers::sqrt3) * size;
