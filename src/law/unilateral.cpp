@@ -60,8 +60,8 @@ Unilateral::Unilateral(const Stack& stack, const Options& options)
 }
 
 void Unilateral::solve(const Stack& stack, const Selection& selection, Solution& solution) {
-  solution.set_zero();
-  solution.laws = 1;
+  solution.begin();
+  solution.y_limits.setZero();
   open_all(stack);
   motion_.setZero();
   slack_.setZero();
