@@ -18,7 +18,7 @@ Column below(Eigen::Index i) {
 /// stays in registers.
 template <int j>
 bool eliminate(Eigen::Matrix4d& block, int rows, double shift, double least, double* factor,
-               double* inverse_pivots) {
+               std::array<double, height>& inverse_pivots) {
   if constexpr (j < height) {
     double inverse = 0.0;
     if (j < rows) {
@@ -28,7 +28,7 @@ bool eliminate(Eigen::Matrix4d& block, int rows, double shift, double least, dou
       }
       inverse = 1.0 / pivot;
     }
-    inverse_pivots[j] = inverse;
+    std::get<j>(inverse_pivots) = inverse;
     const Column scaled = inverse * block.col(j);
     for (int k = j + 1; k < height; ++k) {
       block.col(k) -= scaled[k] * block.col(j);
@@ -60,14 +60,37 @@ bool Cholesky::factorise(const PanelMatrix& m, double shift, double least) {
     double* diagonal = lower_.panel(block) + height * height * block;
     Eigen::Matrix4d now = Eigen::Map<const Eigen::Matrix4d>(diagonal);
     const auto rows = static_cast<int>(std::min(height, size - height * block));
-    if (!eliminate<0>(now, rows, shift, least, diagonal, inverse_pivots_.data() + height * block)) {
+    std::array<double, height> inverse_pivots{};
+    if (!eliminate<0>(now, rows, shift, least, diagonal, inverse_pivots)) {
       return false;
     }
+    set_column(inverse_pivots_.data(), block, [&](std::size_t j) { return inverse_pivots[j]; });
     for (Eigen::Index p = block + 1; p < lower_.panels(); ++p) {
       finish_panel(p, block);
     }
   }
   return true;
+}
+
+/// Up to three rows by their leading minors, which wait for no division.
+bool Cholesky::positive_definite(const PanelMatrix& m, double shift) {
+  if (m.rows() == 0 || m.rows() > 3) {
+    return factorise(m, shift);
+  }
+  const double a = m(0, 0) + shift;
+  if (m.rows() == 1) {
+    return a > 0.0;
+  }
+  const double b = m(1, 0);
+  const double c = m(1, 1) + shift;
+  const double second = a * c - b * b;
+  if (m.rows() == 2) {
+    return a > 0.0 && second > 0.0;
+  }
+  const double d = m(2, 0);
+  const double e = m(2, 1);
+  const double third = (m(2, 2) + shift) * second - e * (a * e - b * d) - d * (c * d - b * e);
+  return a > 0.0 && second > 0.0 && third > 0.0;
 }
 
 /// The four columns of `block` in a panel below it, and what they take off the panel's further columns.
@@ -131,10 +154,10 @@ void Cholesky::solve(double* x) const {
     }
     const double* diagonal = lower_.panel(p) + height * height * p;
     const auto l = [diagonal](Eigen::Index i, Eigen::Index j) { return diagonal[height * j + i]; };
-    now[2] -= l(3, 2) * now[3];  // number by number, as each waits for the one before
-    now[1] = (now[1] - l(3, 1) * now[3]) - l(2, 1) * now[2];
-    now[0] = ((now[0] - l(3, 0) * now[3]) - l(2, 0) * now[2]) - l(1, 0) * now[1];
-    column(x, p) = now;
+    const double third = now[2] - l(3, 2) * now[3];  // number by number, as each waits for the one before
+    const double second = (now[1] - l(3, 1) * now[3]) - l(2, 1) * third;
+    const double first = ((now[0] - l(3, 0) * now[3]) - l(2, 0) * third) - l(1, 0) * second;
+    set_column(x, p, first, second, third, now[3]);
   }
 }
 

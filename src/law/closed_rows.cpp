@@ -1,10 +1,8 @@
 #include <tope/law/closed_rows.hpp>
 
-#include <cmath>
-
 namespace tope {
 
-ClosedRows::ClosedRows(int n, int max_rows) : rows_(n, n), shares_(Vector::Zero(n)), along_(max_rows, n) {
+ClosedRows::ClosedRows(int n, int max_rows) : rows_(n, n), shares_(Vector::Zero(PanelMatrix::padded(n))), along_(max_rows, n) {
   reset();
 }
 
@@ -31,13 +29,15 @@ void ClosedRows::close(const PanelMatrix& rows) {
 }
 
 void ClosedRows::close(const RowSpectrum& spectrum, const Vector& shares) {
-  for (int i = 0; i < spectrum.size(); ++i) {
-    if (shares[i] > nothing) {
-      shares_[size()] = shares[i];
-      rows_.append_row(spectrum.directions(), i, 1.0 / std::sqrt(spectrum.squared(i)));
-      whole_ += shares[i] >= 1.0 ? 1 : 0;
-    }
+  int first = 0;
+  while (first < spectrum.size() && !(shares[first] > nothing)) {
+    ++first;
   }
+  for (int i = first; i < spectrum.size(); ++i) {
+    shares_[size() + i - first] = shares[i];
+    whole_ += shares[i] >= 1.0 ? 1 : 0;
+  }
+  rows_.append_rows(spectrum.directions(), first);
 }
 
 void ClosedRows::close(const double* direction) {
@@ -47,7 +47,7 @@ void ClosedRows::close(const double* direction) {
 }
 
 void ClosedRows::keep(int count) {
-  rows_.resize(count, rows_.cols());
+  rows_.keep_rows(count);
   whole_ = static_cast<int>((shares_.head(count).array() >= 1.0).count());
 }
 

@@ -1,3 +1,5 @@
+#include "panel_columns.hpp"
+
 #include <tope/law/held_limits.hpp>
 
 #include <algorithm>
@@ -38,7 +40,12 @@ const Vector& HeldLimits::hold(const Stack& stack, Eigen::Index joint) {
   auto factor = factor_.col(static_cast<Eigen::Index>(joints_.size()));
   factor.setZero();
   double length = 1.0;
-  direction_.head(stack.size()) = stack.motion.row(joint);
+  for (Eigen::Index p = 0; p < PanelMatrix::panels_of(stack.size()); ++p) {
+    set_column(direction_.data(), p, [&](Eigen::Index i) {
+      const Eigen::Index j = height * p + i;
+      return j < stack.size() ? stack.motion(joint, j) : 0.0;
+    });
+  }
   if (!stack.motion_is_y) {  // those rows are orthonormal as they are
     multiply(closed_.rows(), direction_.data(), factor.data());
     subtract_transposed_product(closed_.rows(), factor.data(), direction_.data());
@@ -49,7 +56,8 @@ const Vector& HeldLimits::hold(const Stack& stack, Eigen::Index joint) {
   joints_.push_back(joint);
   closed_.close(direction_.data());
   if (with_basis_) {
-    row_.set_rows(0, direction_.head(stack.size()).transpose());
+    row_.resize(0, stack.size());
+    row_.append_row(direction_.data());
     open_.close(open_.project(row_, image_));
   }
   return direction_;
@@ -59,8 +67,14 @@ void HeldLimits::meet(const Vector& target, Vector& y) {
   const Eigen::Index count = closed_.size();
   weights_.head(PanelMatrix::padded(count)).setZero();
   for (Eigen::Index i = 0; i < count; ++i) {
-    const double met = factor_.col(i).head(i).dot(weights_.head(i));
-    weights_[i] = (target[joints_[static_cast<std::size_t>(i)]] - met) / factor_(i, i);
+    double rest = target[joints_[static_cast<std::size_t>(i)]];
+    for (Eigen::Index j = 0; j < i; ++j) {
+      rest -= factor_(j, i) * weights_[j];
+    }
+    weights_[i] = rest / factor_(i, i);
+  }
+  for (Eigen::Index p = 0; p < closed_.rows().panels(); ++p) {
+    set_column(weights_.data(), p, [&](Eigen::Index i) { return weights_[height * p + i]; });
   }
   multiply_transposed(closed_.rows(), weights_.data(), y.data());
 }

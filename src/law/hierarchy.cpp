@@ -1,6 +1,7 @@
+#include "panel_columns.hpp"
+
 #include <tope/common/error.hpp>
 #include <tope/law/hierarchy.hpp>
-#include <tope/law/smooth_step.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -42,7 +43,7 @@ Hierarchy::Hierarchy(const Stack& stack, const Options& options)
       residual_(Vector::Zero(PanelMatrix::padded(workspace_rows(stack)))),
       weights_(residual_),
       step_(y_),
-      shares_(stack.size()) {
+      shares_(y_) {
   if (!(0.0 < options.locked_above && options.locked_above < options.damped_below &&
         options.damped_below < 1.0 && options.epsilon > 0.0)) {
     throw ConfigError(
@@ -161,7 +162,7 @@ void Hierarchy::prepare(const Stack& stack, const Selection& selection, std::siz
     return;  // B = (1 + eps^2) I
   }
   if (level.given().is_motion()) {
-    motion_.resize_for_rows(stack.size(), stack.size());
+    motion_.resize(stack.size(), stack.size());
     motion_.set_rows(0, stack.motion);
   }
   level.set_metric(rows(level), options_.epsilon);
@@ -234,12 +235,10 @@ bool Hierarchy::add_level(const Stack& stack, HierarchyLevel& level, bool shared
 
 /// b - A y
 void Hierarchy::find_residual(const HierarchyLevel& level, bool plain) {
-  const Eigen::Index padded = PanelMatrix::padded(level.given().rows());
-  residual_.head(padded) = level.given().b().head(padded);
   if (plain) {
-    residual_.head(padded) -= y_;
+    residual_.head(y_.size()) = level.given().b().head(y_.size()) - y_;
   } else {
-    subtract_product(rows(level), y_.data(), residual_.data());
+    subtract_product(level.given().b().data(), rows(level), y_.data(), residual_.data());
   }
 }
 
@@ -255,10 +254,10 @@ void Hierarchy::restore_closed(const HierarchyLevel& level) {
 void Hierarchy::add_rest() {
   const double metric = 1.0 + options_.epsilon * options_.epsilon;
   multiply(closed_.rows(), residual_.data(), step_.data());
-  for (int i = 0; i < closed_.size(); ++i) {
-    const double left = 1.0 - closed_.share(i);
-    const double rho = left * left / metric;
-    step_[i] *= 1.0 - rho / damped(rho);
+  for (Eigen::Index p = 0; closed_.shared() && p < closed_.rows().panels(); ++p) {
+    const Column left = Column::Ones() - column(closed_.shares().data(), p);
+    const Column rho = left.cwiseProduct(left) / metric;
+    column(step_.data(), p) -= column(step_.data(), p).cwiseProduct(rho).cwiseQuotient(damped(rho));
   }
   y_ += residual_.head(y_.size());
   subtract_transposed_product(closed_.rows(), step_.data(), y_.data());
@@ -314,7 +313,7 @@ const RowSpectrum& Hierarchy::minimise_by_rows(HierarchyLevel& level) {
 bool Hierarchy::add_by_columns(HierarchyLevel& level, bool plain, bool last) {
   whiten_columns(level, plain);
   multiply_columns(task_, gram_);
-  if (!clear_.factorise(gram_, -options_.damped_below)) {
+  if (!clear_.positive_definite(gram_, -options_.damped_below)) {
     spectrum_.compute(task_, gram_, eigen_);
     minimise_damped(spectrum_, task_);
     if (!last) {
@@ -358,10 +357,12 @@ void Hierarchy::minimise() {
 /// Each direction by its own gain, with its share of what is to be closed.
 void Hierarchy::minimise_damped(RowSpectrum& spectrum, const PanelMatrix& rows) {
   spectrum.components(rows, residual_, weights_);
-  for (int i = 0; i < spectrum.size(); ++i) {
-    const double rho = spectrum.squared(i);
-    weights_[i] /= damped(rho);
-    shares_[i] = 1.0 - std::sqrt(1.0 - smooth_step(rho / options_.locked_above));
+  for (Eigen::Index p = 0; p < spectrum.directions().panels(); ++p) {
+    const Column rho = column(spectrum.squared().data(), p);
+    column(weights_.data(), p) = column(weights_.data(), p).cwiseQuotient(damped(rho));
+    const Column x = (rho / options_.locked_above).cwiseMin(1.0);
+    const Column step = x.cwiseProduct(x).cwiseProduct(Column::Constant(3.0) - 2.0 * x);  // smooth_step
+    column(shares_.data(), p) = Column::Ones() - (Column::Ones() - step).cwiseSqrt();
   }
   multiply_transposed(spectrum.directions(), weights_.data(), step_.data());
   move();
@@ -381,9 +382,9 @@ void Hierarchy::move() {
 }
 
 /// 1 / g(rho)
-double Hierarchy::damped(double rho) const {
-  const double deficit = std::max(0.0, 1.0 - rho / options_.damped_below);
-  return rho + options_.damped_below * deficit * deficit;
+Hierarchy::Column Hierarchy::damped(const Column& rho) const {
+  const Column deficit = (Column::Ones() - rho / options_.damped_below).cwiseMax(0.0);
+  return rho + options_.damped_below * deficit.cwiseProduct(deficit);
 }
 
 }  // namespace tope

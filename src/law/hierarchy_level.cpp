@@ -98,7 +98,7 @@ bool HierarchyLevel::close(double* direction, double damped_below) {
 
 bool HierarchyLevel::factorise(double damped_below) {
   subtract(gram_, damped_below, metric_, excess_);
-  clear_ = clear_factor_.factorise(excess_) && factor_.factorise(gram_);
+  clear_ = clear_factor_.positive_definite(excess_) && factor_.factorise(gram_);
   return clear_;
 }
 

@@ -15,7 +15,7 @@ std::size_t LevelRows::gather(const Stack& stack, const Selection& selection, st
       ++tasks;
     }
   }
-  a_.resize_for_rows(rows, stack.size());
+  a_.resize(rows, stack.size());
   b_.tail(b_.size() - rows).setZero();
   is_motion_ = false;
   rows = 0;

@@ -59,7 +59,7 @@ const double* OpenBasis::row_of(const PanelMatrix& m, Eigen::Index row) {
 void OpenBasis::reset(const Matrix& t) {
   reset();
   with_image_ = true;
-  image_.resize_for_rows(t.rows(), t.cols());
+  image_.resize(t.rows(), t.cols());
   image_.set_rows(0, t);
 }
 
@@ -160,7 +160,7 @@ void OpenBasis::close(const RowSpectrum& spectrum, const Vector& shares) {
     if (shares[i] >= 1.0) {
       rows_.append_row(spectrum.directions(), i);
     } else if (shares[i] > ClosedRows::nothing) {
-      turn_all(row_of(spectrum.directions(), i), shares[i] / spectrum.squared(i));
+      turn_all(row_of(spectrum.directions(), i), shares[i]);
     }
   }
   close_rows();  // v_i are orthogonal: the shares taken before leave these as they are

@@ -28,22 +28,32 @@ void with_constant(Eigen::Index count, Action action) {
   }
 }
 
-/// Copies `run` numbers from the beginning of each column, which are `stride` apart, into a panel.
+/// Writes `run` numbers from the beginning of each column, which are `stride` apart, to a panel's columns from row `place`
+/// on, where it is zero; to columns of which the rest is zero if that is the first.
 template <int run>
-void copy_rows(const double* from, Eigen::Index stride, Eigen::Index cols, double* panel) {
-  for (Eigen::Index j = 0; j < cols; ++j) {
-    for (int i = 0; i < run; ++i) {
-      panel[height * j + i] = from[stride * j + i];
+void copy_rows(const double* from, Eigen::Index stride, Eigen::Index cols, double* panel, Eigen::Index place) {
+  if (place == 0) {
+    for (Eigen::Index j = 0; j < cols; ++j) {
+      set_column(panel, j, [&](int i) { return i < run ? from[stride * j + i] : 0.0; });
     }
+    return;
+  }
+  for (Eigen::Index j = 0; j < cols; ++j) {
+    Column now = column(panel, j);
+    for (int i = 0; i < run; ++i) {
+      now += from[stride * j + i] * unit(place + i);
+    }
+    column(panel, j) = now;
   }
 }
 
-void copy_rows(Eigen::Index run, const double* from, Eigen::Index stride, Eigen::Index cols, double* panel) {
-  with_constant(run, [&](auto known) { copy_rows<known>(from, stride, cols, panel); });
+void copy_rows(Eigen::Index run, const double* from, Eigen::Index stride, Eigen::Index cols, double* panel,
+               Eigen::Index place) {
+  with_constant(run, [&](auto known) { copy_rows<known>(from, stride, cols, panel, place); });
 }
 
 /// One panel times x.
-Column product(const double* panel, Eigen::Index cols, const double* x) {
+[[gnu::always_inline]] inline Column product(const double* panel, Eigen::Index cols, const double* x) {
   Column even = Column::Zero();  // two sums, as each waits for its last term
   Column odd = Column::Zero();
   Eigen::Index j = 0;
@@ -136,40 +146,51 @@ void add_block(Eigen::Index depth, const double* left, Eigen::Index stride, cons
 }  // namespace
 
 void PanelMatrix::assign_transposed(const Matrix& m) {
-  resize(m.cols(), m.rows());
-  for (Eigen::Index p = 0; p < panels(); ++p) {
-    with_constant(std::min(height, rows_ - height * p), [&](auto known) {
-      const double* from = m.data() + height * p * m.rows();
+  resize(0, m.rows());
+  Eigen::Index run = 0;
+  for (Eigen::Index i = 0; i < m.cols(); i += run) {
+    run = std::min(height, m.cols() - i);
+    rows_ += run;
+    with_constant(run, [&](auto known) {
+      const double* from = m.data() + m.rows() * i;
+      double* to = panel(i / height);
       for (Eigen::Index j = 0; j < cols_; ++j) {
-        Column now = Column::Zero();  // whole columns, as they are read whole at once
-        for (int i = 0; i < known; ++i) {
-          now[i] = from[m.rows() * i + j];
-        }
-        column(panel(p), height * j) = now;
+        set_column(to, j, [&](int k) { return k < known ? from[m.rows() * k + j] : 0.0; });
       }
     });
   }
 }
 
-void PanelMatrix::set_rows(Eigen::Index first, const Matrix& m) {
+void PanelMatrix::set_rows(Eigen::Index first, const Eigen::Ref<const Matrix>& m) {
   Eigen::Index run = 0;  // rows within one panel
   for (Eigen::Index i = 0; i < m.rows(); i += run) {
-    run = std::min(height - (first + i) % height, m.rows() - i);
-    copy_rows(run, m.data() + i, m.rows(), m.cols(), &(*this)(first + i, 0));
+    const Eigen::Index place = (first + i) % height;
+    run = std::min(height - place, m.rows() - i);
+    copy_rows(run, m.data() + i, m.outerStride(), m.cols(), panel((first + i) / height), place);
   }
 }
 
-void PanelMatrix::append_rows(const PanelMatrix& other) {
-  const Eigen::Index first = rows_;
-  const Eigen::Index panels_before = panels();
-  rows_ += other.rows_;
-  for (Eigen::Index p = panels_before; p < panels(); ++p) {
-    Eigen::Map<Vector>(panel(p), height * cols_).setZero();
-  }
+void PanelMatrix::append_row(const double* row, Eigen::Index stride) {
+  copy_rows<1>(row, stride, cols_, panel(rows_ / height), rows_ % height);
+  ++rows_;
+}
+
+void PanelMatrix::append_rows(const PanelMatrix& other, Eigen::Index from) {
   Eigen::Index run = 0;  // rows within one panel of both
-  for (Eigen::Index i = 0; i < other.rows_; i += run) {
-    run = std::min({height - (first + i) % height, height - i % height, other.rows_ - i});
-    copy_rows(run, other.panel(i / height) + i % height, height, cols_, &(*this)(first + i, 0));
+  for (; from < other.rows_; from += run, rows_ += run) {
+    const Eigen::Index place = rows_ % height;
+    run = std::min({height - place, height - from % height, other.rows_ - from});
+    copy_rows(run, other.panel(from / height) + from % height, height, cols_, panel(rows_ / height), place);
+  }
+}
+
+void PanelMatrix::keep_rows(Eigen::Index count) {
+  rows_ = count;
+  if (count % height != 0) {
+    double* last = panel(count / height);
+    for (Eigen::Index j = 0; j < cols_; ++j) {
+      column(last, height * j) = column(last, height * j).cwiseProduct(above(count % height));
+    }
   }
 }
 
@@ -187,10 +208,10 @@ void add_product(const PanelMatrix& m, const double* x, double* out) {
   }
 }
 
-void subtract_product(const PanelMatrix& m, const double* x, double* out) {
+void subtract_product(const double* b, const PanelMatrix& m, const double* x, double* out) {
   const Eigen::Index panels = m.panels();
   for (Eigen::Index p = 0; p < panels; ++p) {
-    column(out, p) -= product(m.panel(p), m.cols(), x);
+    column(out, p) = column(b, p) - product(m.panel(p), m.cols(), x);
   }
 }
 
@@ -267,6 +288,16 @@ void scale(PanelMatrix& m, double factor) {
     double* panel = m.panel(p);
     for (Eigen::Index j = 0; j < m.cols(); ++j) {
       column(panel, j) *= factor;
+    }
+  }
+}
+
+void scale(PanelMatrix& m, const double* factors) {
+  for (Eigen::Index p = 0; p < m.panels(); ++p) {
+    double* panel = m.panel(p);
+    const Column factor = column(factors, p);
+    for (Eigen::Index j = 0; j < m.cols(); ++j) {
+      column(panel, j) = column(panel, j).cwiseProduct(factor);
     }
   }
 }

@@ -1,29 +1,32 @@
+#include "panel_columns.hpp"
+
 #include <tope/law/row_spectrum.hpp>
 
-#include <cmath>
+#include <algorithm>
+#include <limits>
 
 namespace tope {
 
 RowSpectrum::RowSpectrum(int max_size, int n)
-    : squared_(max_size),
+    : squared_(Vector::Zero(PanelMatrix::padded(max_size))),
+      inverses_(squared_),
       left_(max_size, max_size),
       directions_(max_size, n),
       projected_(Vector::Zero(PanelMatrix::padded(n))) {}
 
 void RowSpectrum::compute(const PanelMatrix& k, const PanelMatrix& gram, SymmetricEigen& eigen) {
   by_rows_ = k.rows() < k.cols();
-  if (by_rows_) {
-    decompose(gram, eigen, left_);
-    multiply(left_, k, directions_);
+  if (!by_rows_) {
+    decompose(gram, eigen, directions_);
     return;
   }
-  decompose(gram, eigen, directions_);
-  for (Eigen::Index i = 0; i < directions_.rows(); ++i) {
-    const double sigma = std::sqrt(squared_[i]);
-    for (Eigen::Index j = 0; j < directions_.cols(); ++j) {
-      directions_(i, j) *= sigma;
-    }
+  decompose(gram, eigen, left_);
+  constexpr double least = std::numeric_limits<double>::min();  // so that none is divided by zero
+  for (Eigen::Index p = 0; p < left_.panels(); ++p) {
+    column(inverses_.data(), p) = column(squared_.data(), p).cwiseMax(least).cwiseSqrt().cwiseInverse();
   }
+  scale(left_, inverses_.data());
+  multiply(left_, k, directions_);
 }
 
 /// Values, and vectors as rows.
@@ -33,20 +36,24 @@ void RowSpectrum::decompose(const PanelMatrix& gram, SymmetricEigen& eigen, Pane
     return;
   }
   const SymmetricEigen::Solver& solver = eigen.compute(gram);
-  squared_.head(gram.rows()) = solver.eigenvalues().cwiseMax(0.0);
+  const Vector& values = solver.eigenvalues();
+  for (Eigen::Index p = 0; p < gram.panels(); ++p) {
+    set_column(squared_.data(), p, [&](Eigen::Index i) {
+      return height * p + i < values.size() ? std::max(0.0, values[height * p + i]) : 0.0;
+    });
+  }
   vectors.assign_transposed(solver.eigenvectors());
 }
 
 void RowSpectrum::components(const PanelMatrix& k, const Vector& r, Vector& out) {
-  if (by_rows_) {
-    multiply(left_, r.data(), out.data());
+  if (!by_rows_) {
+    multiply_transposed(k, r.data(), projected_.data());
+    multiply(directions_, projected_.data(), out.data());
     return;
   }
-  multiply_transposed(k, r.data(), projected_.data());
-  multiply(directions_, projected_.data(), out.data());
-  for (int i = 0; i < size(); ++i) {
-    // u = K v / sigma: where sigma vanishes the direction does, and what multiplies it does not matter
-    out[i] = squared_[i] > 0.0 ? out[i] / squared_[i] : 0.0;
+  multiply(left_, r.data(), out.data());
+  for (Eigen::Index p = 0; p < left_.panels(); ++p) {
+    column(out.data(), p) = column(out.data(), p).cwiseProduct(column(squared_.data(), p));
   }
 }
 

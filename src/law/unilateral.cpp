@@ -141,11 +141,10 @@ const PanelMatrix& Unilateral::open_task() {
 /// What the gathered rows want beyond y, in the directions that are open. False when cut off.
 bool Unilateral::solve_level(const PanelMatrix& task, std::size_t position) {
   const Eigen::Index padded = PanelMatrix::padded(rows_.rows());
-  residual_.head(padded) = rows_.b().head(padded);
   if (rows_.is_motion()) {
-    residual_.head(padded) -= motion_;
+    residual_.head(padded) = rows_.b().head(padded) - motion_;
   } else {
-    subtract_product(rows_.a(), y_.data(), residual_.data());
+    subtract_product(rows_.b().data(), rows_.a(), y_.data(), residual_.data());
   }
   const bool solved = solver_.solve(task, residual_, squared_damping(residual_.head(padded).squaredNorm()),
                                     open_.image(), lower_, upper_, active_[position]);
@@ -178,14 +177,15 @@ void Unilateral::set_bounds(const Stack& stack, int level) {
 
 /// True when every sigma exceeds the lock.
 bool Unilateral::all_directions_clear(const PanelMatrix& task) {
-  return task.rows() <= task.cols() && clear_.factorise(solver_.gram(), -options_.lock * options_.lock);
+  return task.rows() <= task.cols() &&
+         clear_.positive_definite(solver_.gram(), -options_.lock * options_.lock);
 }
 
 /// Takes each direction out of M as far as its sigma says.
 void Unilateral::lock_gradually(const PanelMatrix& task) {
   spectrum_.compute(task, solver_.gram(), eigen_);
   for (int i = 0; i < spectrum_.size(); ++i) {
-    shares_[i] = quintic_step(std::sqrt(spectrum_.squared(i)) / options_.lock);
+    shares_[i] = quintic_step(std::sqrt(spectrum_.squared()[i]) / options_.lock);
   }
   open_.close(spectrum_, shares_);
 }

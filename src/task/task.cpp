@@ -18,7 +18,8 @@ Task::Task(int size, int nv, Reference reference)
       rate_(Vector::Zero(size)),
       acceleration_(Vector::Zero(size)),
       served_(Vector::Zero(size)),
-      reference_(std::move(reference)) {
+      reference_(std::move(reference)),
+      duration_(std::visit([](const auto& r) { return r.duration(); }, reference_)) {
   std::visit([size](auto& r) { r.resize(size); }, reference_);
 }
 
@@ -94,10 +95,6 @@ void Task::observe(const Vector& motion) {
 
 bool Task::replans() const {
   return std::visit([](const auto& r) { return r.replans(); }, reference_);
-}
-
-std::optional<double> Task::duration() const {
-  return std::visit([](const auto& r) { return r.duration(); }, reference_);
 }
 
 double Task::gain() const {

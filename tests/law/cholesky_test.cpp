@@ -67,8 +67,19 @@ BOOST_AUTO_TEST_CASE(tells_whether_all_eigenvalues_exceed_a_bound) {
     Random random(size);
     const Matrix m = random.positive_definite(size, 0.1, 3.0);
     const double smallest = Eigen::SelfAdjointEigenSolver<Matrix>(m).eigenvalues()[0];
-    BOOST_TEST(cholesky.factorise(PanelMatrix(m), -smallest + 1e-9));
-    BOOST_TEST(!cholesky.factorise(PanelMatrix(m), -smallest - 1e-9));
+    Matrix garbage_above = m;  // the upper triangle must not be read
+    garbage_above.triangularView<Eigen::StrictlyUpper>().setConstant(1e3);
+    const PanelMatrix panels(garbage_above);
+    BOOST_TEST(cholesky.factorise(panels, -smallest + 1e-9));
+    BOOST_TEST(!cholesky.factorise(panels, -smallest - 1e-9));
+    BOOST_TEST(cholesky.positive_definite(panels, -smallest + 1e-9));
+    BOOST_TEST(!cholesky.positive_definite(panels, -smallest - 1e-9));
+    // each minor has to count
+    for (int i = 0; i < size; ++i) {
+      Matrix one_negative = Matrix::Identity(size, size);
+      one_negative(i, i) = -1e-3;
+      BOOST_TEST(!cholesky.positive_definite(PanelMatrix(one_negative)));
+    }
   }
 }
 
@@ -80,6 +91,7 @@ BOOST_AUTO_TEST_CASE(refuses_small_pivots_and_what_is_no_number) {
   BOOST_TEST(!cholesky.factorise(PanelMatrix(m), 0.0, 1.1e-4));
   m(1, 1) = NAN;
   BOOST_TEST(!cholesky.factorise(PanelMatrix(m)));
+  BOOST_TEST(!cholesky.positive_definite(PanelMatrix(m)));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -84,15 +84,15 @@ BOOST_AUTO_TEST_CASE(take_shares_and_leave_a_basis) {
       RowSpectrum spectrum(n, n);
       SymmetricEigen eigen(n);
       spectrum.compute(projected, gram, eigen);
-      const Vector shares = (Vector(3) << random.uniform(0.0, 1.0), 1.0, 0.0).finished();
+      const Vector shares = (Vector(3) << 0.0, random.uniform(0.0, 1.0), 1.0).finished();
       closed.close(spectrum, shares);
-      BOOST_TEST(closed.size() == first.rows() + 2);  // nothing is taken of the third
+      BOOST_TEST(closed.size() == first.rows() + 2);  // nothing is taken of the first
       BOOST_TEST(closed.open() == n - first.rows() - 1);
       BOOST_TEST(closed.shared());
 
       Matrix half = null_space(first);  // N = half half^T
-      for (int i = 0; i < 2; ++i) {
-        const Vector u = dense(spectrum.directions()).row(i).transpose() / std::sqrt(spectrum.squared(i));
+      for (int i = 1; i < 3; ++i) {
+        const Vector u = dense(spectrum.directions()).row(i).transpose();
         half -= shares[i] * u * u.transpose();
       }
       const Matrix q = dense(closed.rows());
@@ -107,6 +107,9 @@ BOOST_AUTO_TEST_CASE(take_shares_and_leave_a_basis) {
       BOOST_TEST(closed.open() == n - first.rows() - 2);
       closed.keep(rows);
       BOOST_TEST((dense(closed.rows()) - q).norm() == 0.0);
+      Vector along = Vector::Zero(PanelMatrix::padded(rows));
+      multiply(closed.rows(), random.vector(n).data(), along.data());
+      BOOST_TEST(along.tail(along.size() - rows).norm() == 0.0);
       BOOST_TEST(closed.open() == n - first.rows() - 1);
       OpenBasis open(n);
       open.reset(closed);

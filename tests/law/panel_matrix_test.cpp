@@ -19,7 +19,7 @@ PanelMatrix used(Random& random, const Matrix& m) {
   constexpr int dropped = 3;
   PanelMatrix result(m.rows() + 5, m.cols() + dropped + 1);
   result.set_rows(0, random.matrix(static_cast<int>(m.rows()) + 5, static_cast<int>(m.cols()) + dropped + 1));
-  result.resize_for_rows(m.rows(), m.cols() + dropped);
+  result.resize(m.rows(), m.cols() + dropped);
   Matrix wide = Matrix::Ones(m.rows(), m.cols() + dropped);
   wide.rightCols(m.cols()) = m;
   result.set_rows(0, wide);
@@ -48,8 +48,7 @@ void check(Random& random, int rows, int cols) {
   out = padded(w);
   add_product(panels, x.data(), out.data());
   BOOST_TEST((out.head(rows) - w - m * x).norm() <= close * (1.0 + x.norm()));
-  out = padded(w);
-  subtract_product(panels, x.data(), out.data());
+  subtract_product(padded(w).data(), panels, x.data(), out.data());
   BOOST_TEST((out.head(rows) - w + m * x).norm() <= close * (1.0 + x.norm()));
   check_rest_is_zero(out, rows);
   Vector across(cols);
@@ -81,6 +80,8 @@ void check(Random& random, int rows, int cols) {
   BOOST_TEST((dense(difference) - 0.7 * m).norm() <= close);
   scale(difference, -2.0);
   BOOST_TEST((dense(difference) + 1.4 * m).norm() <= close);
+  scale(difference, padded(w).data());
+  BOOST_TEST((dense(difference) + 1.4 * w.asDiagonal() * m).norm() <= close * (1.0 + w.norm()));
   difference.assign(panels);
   BOOST_TEST((dense(difference) - m).norm() == 0.0);
   PanelMatrix transposed = used(random, random.matrix(static_cast<int>(PanelMatrix::padded(cols)), rows));
@@ -151,7 +152,7 @@ BOOST_AUTO_TEST_CASE(rows_of_another_can_be_added) {
         const PanelMatrix other(m.bottomRows(count));
         PanelMatrix panels(20, 5);
         panels.set_rows(0, random.matrix(20, 5));
-        panels.resize_for_rows(before, 5);
+        panels.resize(before, 5);
         panels.set_rows(0, m.topRows(before));
         panels.append_rows(other);
         BOOST_TEST((dense(panels) - m).norm() == 0.0);
@@ -159,9 +160,9 @@ BOOST_AUTO_TEST_CASE(rows_of_another_can_be_added) {
         multiply(panels, Vector::Ones(5).eval().data(), out.data());
         check_rest_is_zero(out.head(PanelMatrix::padded(before + count)), before + count);
 
-        panels.append_row(other, count - 1, -2.0);
+        panels.append_row(other, count - 1);
         m.conservativeResize(before + count + 1, 5);
-        m.row(before + count) = -2.0 * m.row(before + count - 1);
+        m.row(before + count) = m.row(before + count - 1);
         BOOST_TEST((dense(panels) - m).norm() == 0.0);
       }
     }

@@ -31,9 +31,10 @@ void check(Random& random, const Matrix& k) {
   Matrix outer = Matrix::Zero(d, d);
   Vector product = Vector::Zero(d);
   for (int i = 0; i < spectrum.size(); ++i) {
-    BOOST_TEST(std::abs(spectrum.squared(i) - std::pow(values[spectrum.size() - 1 - i], 2)) <= 1e-12);
-    BOOST_TEST(std::abs(directions.row(i).squaredNorm() - spectrum.squared(i)) <= 1e-12);
-    outer += directions.row(i).transpose() * directions.row(i);
+    BOOST_TEST(std::abs(spectrum.squared()[i] - std::pow(values[spectrum.size() - 1 - i], 2)) <= 1e-12);
+    // unit length, but for the rounding of K
+    BOOST_TEST(spectrum.squared()[i] * std::abs(directions.row(i).squaredNorm() - 1.0) <= 1e-12);
+    outer += spectrum.squared()[i] * directions.row(i).transpose() * directions.row(i);
     product += components[i] * directions.row(i);
   }
   BOOST_TEST((outer - k.transpose() * k).norm() <= 1e-12);

@@ -11,6 +11,8 @@ class Cholesky {
 
   /// Of the lower triangle of M (m x m). False, and no factor, when a pivot is `least` or smaller.
   bool factorise(const PanelMatrix& m, double shift = 0.0, double least = 0.0);
+  /// True when M + shift I is positive definite. What is factorised is then undefined.
+  bool positive_definite(const PanelMatrix& m, double shift = 0.0);
 
   Eigen::Index size() const { return lower_.rows(); }
   /// x <- (M + shift I)^-1 x, in padded(m) numbers, those beyond the last zero.

@@ -25,6 +25,7 @@ class ClosedRows {
   bool shared() const { return whole_ < size(); }    ///< some row is not taken whole
   const PanelMatrix& rows() const { return rows_; }  ///< Q
   double share(int row) const { return shares_[row]; }
+  const Vector& shares() const { return shares_; }  ///< (k, padded with any numbers)
 
   /// out = A N (m x n), where no row is shared.
   void project(const PanelMatrix& a, PanelMatrix& out);
@@ -32,7 +33,7 @@ class ClosedRows {
   void close(const PanelMatrix& rows);
   /// Takes one more direction (n) whole.
   void close(const double* direction);
-  /// Takes each direction of the spectrum, which are rows of some A N, by a share.
+  /// Takes each direction of the spectrum, which are rows of some A N, by a share. The shares ascend as the spectrum does.
   void close(const RowSpectrum& spectrum, const Vector& shares);
   /// Gives back all but the first `count` rows.
   void keep(int count);

@@ -38,6 +38,7 @@ class Hierarchy final : public StackLaw {
   void solve(const Stack& stack, const Selection& selection, const Vector& limit_target, Solution& solution);
 
  private:
+  using Column = PanelMatrix::Column;
   /// A level's tasks.
   struct Range {
     std::size_t first = 0;
@@ -65,7 +66,7 @@ class Hierarchy final : public StackLaw {
   void minimise_damped(RowSpectrum& spectrum, const PanelMatrix& rows);
   void close_shares(const RowSpectrum& spectrum);
   void move();
-  double damped(double rho) const;
+  Column damped(const Column& rho) const;
 
   Options options_;
   std::vector<Range> ranges_;
@@ -93,7 +94,7 @@ class Hierarchy final : public StackLaw {
   Vector residual_;       // b - A y (m)
   Vector weights_;        // (m or d)
   Vector step_;           // (n or d)
-  Vector shares_;
+  Vector shares_;         // (d)
 };
 
 }  // namespace tope

@@ -68,43 +68,18 @@ class PanelMatrix {
       (*this)(i, i) = 1.0;
     }
   }
-  /// Copies m into the rows from `first` on.
-  void set_rows(Eigen::Index first, const Matrix& m);
-  template <typename Derived>
-  void set_rows(Eigen::Index first, const Eigen::MatrixBase<Derived>& m) {
-    for (Eigen::Index i = 0; i < m.rows(); ++i) {
-      double* out = &(*this)(first + i, 0);
-      for (Eigen::Index j = 0; j < m.cols(); ++j) {
-        out[height * j] = m(i, j);
-      }
-    }
-  }
+  /// Copies m (up to cols wide) into the rows from `first` on: the first of a panel, or one from which on its panel is zero.
+  void set_rows(Eigen::Index first, const Eigen::Ref<const Matrix>& m);
   /// Adds a row (cols) at the end.
-  void append_row(const double* row) {
-    const Eigen::Index i = rows_++;
-    for (Eigen::Index j = 0; j < cols_; ++j) {
-      if (i % height == 0) {
-        column(panel(i / height), height * j).setZero();
-      }
-      (*this)(i, j) = row[j];
-    }
+  void append_row(const double* row) { append_row(row, 1); }
+  /// Adds a row of another matrix (any x cols) at the end.
+  void append_row(const PanelMatrix& other, Eigen::Index row) {
+    append_row(other.panel(row / height) + row % height, height);
   }
-
-  /// Adds a row of another matrix (any x cols) at the end, times a factor.
-  void append_row(const PanelMatrix& other, Eigen::Index row, double factor = 1.0) {
-    const double* from = other.panel(row / height) + row % height;
-    double* to = panel(rows_ / height);
-    if (rows_ % height == 0) {
-      Eigen::Map<Vector>(to, height * cols_).setZero();
-    }
-    to += rows_ % height;
-    ++rows_;
-    for (Eigen::Index j = 0; j < height * cols_; j += height) {
-      to[j] = factor * from[j];
-    }
-  }
-  /// Adds the rows of another matrix (any x cols) at the end.
-  void append_rows(const PanelMatrix& other);
+  /// Adds the rows of another matrix (any x cols) from `from` on at the end.
+  void append_rows(const PanelMatrix& other, Eigen::Index from = 0);
+  /// Keeps the first `count` rows.
+  void keep_rows(Eigen::Index count);
 
   double& operator()(Eigen::Index i, Eigen::Index j) { return values_[index(i, j)]; }
   double operator()(Eigen::Index i, Eigen::Index j) const { return values_[index(i, j)]; }
@@ -123,6 +98,9 @@ class PanelMatrix {
   }
 
  private:
+  /// Adds a row of which the numbers are `stride` apart.
+  void append_row(const double* row, Eigen::Index stride);
+
   static Eigen::Map<Column> column(double* panel, Eigen::Index offset) {
     return Eigen::Map<Column>(panel + offset);
   }
@@ -146,8 +124,8 @@ class PanelMatrix {
 void multiply(const PanelMatrix& m, const double* x, double* out);
 /// out (rows) += M x (cols).
 void add_product(const PanelMatrix& m, const double* x, double* out);
-/// out (rows) -= M x (cols).
-void subtract_product(const PanelMatrix& m, const double* x, double* out);
+/// out = b (rows) - M x (cols).
+void subtract_product(const double* b, const PanelMatrix& m, const double* x, double* out);
 /// out (cols) = M^T w (rows).
 void multiply_transposed(const PanelMatrix& m, const double* w, double* out);
 /// out (cols) -= M^T w (rows).
@@ -164,6 +142,8 @@ void multiply_rows(const PanelMatrix& m, PanelMatrix& out);
 void multiply_columns(const PanelMatrix& m, PanelMatrix& out);
 /// M <- factor M.
 void scale(PanelMatrix& m, double factor);
+/// M <- diag(factors) M, with a factor a row.
+void scale(PanelMatrix& m, const double* factors);
 /// out = A - scale B.
 void subtract(const PanelMatrix& a, double scale, const PanelMatrix& b, PanelMatrix& out);
 /// M -= w (rows) v^T (cols).

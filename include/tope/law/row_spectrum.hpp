@@ -5,8 +5,8 @@
 
 namespace tope {
 
-/// Singular values sigma_i and vectors u_i, v_i of rows K (m x d), from the smaller of their Gram matrices; those beyond
-/// min(m, d) are left out.
+/// Singular values sigma_i and vectors u_i, v_i of rows K (m x d), in ascending order, from the smaller of their Gram
+/// matrices; those beyond min(m, d) are left out.
 class RowSpectrum {
  public:
   /// For up to max_size of them and d <= n.
@@ -16,10 +16,10 @@ class RowSpectrum {
   void compute(const PanelMatrix& k, const PanelMatrix& gram, SymmetricEigen& eigen);
 
   int size() const { return static_cast<int>(directions_.rows()); }
-  double squared(int i) const { return squared_[i]; }  ///< sigma_i^2
-  /// sigma_i v_i, one a row (size x d).
+  const Vector& squared() const { return squared_; }  ///< sigma_i^2 (padded)
+  /// v_i, one a row (size x d), to the rounding of K over sigma_i.
   const PanelMatrix& directions() const { return directions_; }
-  /// out[i] = u_i^T r (padded), for r (padded(m)) and the K of compute().
+  /// out[i] = v_i^T K^T r (padded), for r (padded(m)) and the K of compute().
   void components(const PanelMatrix& k, const Vector& r, Vector& out);
 
  private:
@@ -27,7 +27,8 @@ class RowSpectrum {
 
   bool by_rows_ = false;
   Vector squared_;
-  PanelMatrix left_;  // u_i^T, one a row
+  Vector inverses_;   // 1 / sigma_i (padded)
+  PanelMatrix left_;  // u_i^T / sigma_i, one a row
   PanelMatrix directions_;
   Vector projected_;  // K^T r
 };

@@ -64,7 +64,7 @@ class Task {
   /// d2e/dt2 (m) if no joint accelerated, after update_second_order().
   const Vector& drift() const { return drift_; }
   /// Seconds from start to promised arrival, if the reference promises one.
-  std::optional<double> duration() const;
+  std::optional<double> duration() const { return duration_; }
   const Reference& reference() const { return reference_; }
   /// Gain of the reference [1/s].
   double gain() const;
@@ -112,6 +112,7 @@ class Task {
   Vector acceleration_;
   Vector served_;  // of rate_ or acceleration_, what the last motion gave
   Reference reference_;
+  std::optional<double> duration_;  // of reference_
   double last_time_ = 0.0;
   bool started_ = false;
   bool second_order_ = false;
