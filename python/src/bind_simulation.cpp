@@ -231,6 +231,7 @@ nb::dict time_cycles(const Scenario& scenario, int acting, int cycles) {
   entry["largest_laws"] = timed.largest_laws;
   entry["cycle_us"] = nb::cast(timed.cycle_us);
   entry["rigid_body_us"] = nb::cast(timed.rigid_body_us);
+  entry["idle_us"] = nb::cast(timed.idle_us);
   return entry;
 }
 

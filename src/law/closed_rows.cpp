@@ -2,7 +2,8 @@
 
 namespace tope {
 
-ClosedRows::ClosedRows(int n, int max_rows) : rows_(n, n), shares_(Vector::Zero(PanelMatrix::padded(n))), along_(max_rows, n) {
+ClosedRows::ClosedRows(int n, int max_rows)
+    : rows_(n, n), shares_(Vector::Zero(PanelMatrix::padded(n))), along_(max_rows, n) {
   reset();
 }
 

@@ -19,7 +19,8 @@ inline Eigen::Map<const Column> column(const double* panel, Eigen::Index j) {
 
 /// Writes column j of a panel by halves, as it is read: a processor forwards what it has just written only to reads that
 /// one write covers, and a column written number by number would keep the next product waiting. Compilers do not see to it.
-inline void set_column(double* panel, Eigen::Index j, double first, double second, double third, double fourth) {
+inline void set_column(double* panel, Eigen::Index j, double first, double second, double third,
+                       double fourth) {
   using Half [[gnu::vector_size(16), gnu::aligned(8), gnu::may_alias]] = double;
   auto* halves = reinterpret_cast<Half*>(panel + height * j);
   halves[0] = Half{first, second};

@@ -31,7 +31,8 @@ void with_constant(Eigen::Index count, Action action) {
 /// Writes `run` numbers from the beginning of each column, which are `stride` apart, to a panel's columns from row `place`
 /// on, where it is zero; to columns of which the rest is zero if that is the first.
 template <int run>
-void copy_rows(const double* from, Eigen::Index stride, Eigen::Index cols, double* panel, Eigen::Index place) {
+void copy_rows(const double* from, Eigen::Index stride, Eigen::Index cols, double* panel,
+               Eigen::Index place) {
   if (place == 0) {
     for (Eigen::Index j = 0; j < cols; ++j) {
       set_column(panel, j, [&](int i) { return i < run ? from[stride * j + i] : 0.0; });

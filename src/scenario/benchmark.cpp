@@ -10,6 +10,7 @@
 #include <pinocchio/algorithm/kinematics.hpp>
 #include <pinocchio/algorithm/rnea.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -86,11 +87,26 @@ class BareTerms {
   pinocchio::Motion drift_;
 };
 
+using Clock = std::chrono::steady_clock;
+using Microseconds = std::chrono::duration<double, std::micro>;
+
 template <typename Action>
 double timed_us(Action action) {
-  const auto begin = std::chrono::steady_clock::now();
+  const auto begin = Clock::now();
   action();
-  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
+  return Microseconds(Clock::now() - begin).count();
+}
+
+void wait(Microseconds length) {
+  const auto begin = Clock::now();
+  while (Clock::now() - begin < length) {
+  }
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 }  // namespace
@@ -112,15 +128,25 @@ Benchmark benchmark(const Scenario& scenario, const BenchmarkOptions& options) {
   const std::size_t timed = static_cast<std::size_t>(rounds) * states.size();
   result.cycle_us.reserve(timed);
   result.rigid_body_us.reserve(timed);
+  result.idle_us.reserve(timed);
+  Microseconds usual{0.0};
+  std::vector<double> warm_up;
+  warm_up.reserve(states.size());
   for (int round = -1; round < rounds; ++round) {  // the first one warms up
     for (const State& state : states) {
       const double bare = timed_us([&] { terms.evaluate(state.q, state.v); });
       const double cycle = timed_us([&] { controller.update(state.q, state.v, state.t, u); });
-      if (round >= 0) {
+      if (round < 0) {
+        warm_up.push_back(cycle);
+      } else {
         result.rigid_body_us.push_back(bare);
         result.cycle_us.push_back(cycle);
+        result.idle_us.push_back(timed_us([usual] { wait(usual); }));
       }
       result.largest_laws = std::max(result.largest_laws, controller.status().laws);
+    }
+    if (round < 0) {
+      usual = Microseconds(median(warm_up));
     }
   }
   return result;

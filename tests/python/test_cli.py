@@ -242,6 +242,7 @@ def test_bench_times_every_case_beside_the_rigid_body_terms(tope, tmp_path):
             0 < case["rigid_body_us"] < case["p50_us"] <= case["p99_us"] <= case["p999_us"] <= case["max_us"]
         )
         assert 0 < case["p999_undisturbed_us"] <= case["p999_us"]
+        assert case["idle_p999_us"] >= 0.5 * case["p50_us"]
         assert case["ratio"] == pytest.approx(case["p50_us"] / case["rigid_body_us"])
         assert case["states"] > 100
         assert (case["n"], case["levels"]) == (8, 3)

@@ -20,6 +20,8 @@ struct Benchmark {
   int largest_laws = 0;                 ///< laws evaluated in a cycle, at most
   std::vector<double> cycle_us{};       ///< of each Controller::update: all states, again and again
   std::vector<double> rigid_body_us{};  ///< of each evaluation of the terms
+  /// Of waits for as long as the median cycle that only read the clock: what is longer, the machine took.
+  std::vector<double> idle_us{};
 };
 
 /// Records the scenario's closed loop, then times along its states. The terms are Pinocchio's own algorithms: forward
