@@ -3,6 +3,7 @@
 // changes, over Unilateral. Not here: its inputs, the activations by state (limit room).
 #include "support/infinity_norm.hpp"
 #include "support/path.hpp"
+#include "support/phi.hpp"
 #include "support/random_stack.hpp"
 
 #include <tope/law/chain.hpp>
@@ -22,13 +23,6 @@ BOOST_AUTO_TEST_SUITE(chain)
 namespace {
 
 const Hierarchy::Options defaults;
-
-Vector phi(const Stack& stack, const Selection& selection) {
-  Hierarchy law(stack, defaults);
-  Solution solution(stack.size());
-  law.solve(stack, selection, solution);
-  return solution.y;
-}
 
 Solution chain_solution(const Stack& stack) {
   Hierarchy law(stack, defaults);

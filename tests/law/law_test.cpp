@@ -1,6 +1,7 @@
 // Law: which phi over which activations each limit method takes; the methods' names; small numerical
 // helpers. Not here: what each law computes; they have files of their own.
 #include "support/infinity_norm.hpp"
+#include "support/phi.hpp"
 #include "support/random_stack.hpp"
 #include "support/text.hpp"
 
@@ -18,13 +19,6 @@ Vector solve(const Stack& stack, LimitMethod method) {
   Law law(stack, {.method = method});
   Solution solution(stack.size());
   law.solve(stack, solution);
-  return solution.y;
-}
-
-Vector phi(const Stack& stack, const Selection& selection) {
-  Hierarchy law(stack, {});
-  Solution solution(stack.size());
-  law.solve(stack, selection, solution);
   return solution.y;
 }
 
