@@ -2,6 +2,7 @@
 
 #include <tope/common/error.hpp>
 #include <tope/law/hierarchy.hpp>
+#include <tope/law/smooth_step.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -360,9 +361,7 @@ void Hierarchy::minimise_damped(RowSpectrum& spectrum, const PanelMatrix& rows) 
   for (Eigen::Index p = 0; p < spectrum.directions().panels(); ++p) {
     const Column rho = column(spectrum.squared().data(), p);
     column(weights_.data(), p) = column(weights_.data(), p).cwiseQuotient(damped(rho));
-    const Column x = (rho / options_.locked_above).cwiseMin(1.0);
-    const Column step = x.cwiseProduct(x).cwiseProduct(Column::Constant(3.0) - 2.0 * x);  // smooth_step
-    column(shares_.data(), p) = Column::Ones() - (Column::Ones() - step).cwiseSqrt();
+    column(shares_.data(), p) = 1.0 - (1.0 - smooth_step(rho.array() / options_.locked_above)).sqrt();
   }
   multiply_transposed(spectrum.directions(), weights_.data(), step_.data());
   move();

@@ -86,6 +86,13 @@ BOOST_AUTO_TEST_CASE(names_of_methods_round_trip) {
               {"unknown limit method 'unilatral'", "did you mean 'unilateral'?"});
 }
 
+BOOST_AUTO_TEST_CASE(smooth_step_of_an_array_is_that_of_each_number) {
+  const Eigen::Array4d x(-0.5, 0.25, 0.8, 1.5);
+  for (int i = 0; i < 4; ++i) {
+    BOOST_TEST(smooth_step(x)[i] == smooth_step(x[i]));
+  }
+}
+
 BOOST_AUTO_TEST_CASE(smooth_step_is_smooth) {
   BOOST_TEST(smooth_step(-1.0) == 0.0);
   BOOST_TEST(smooth_step(0.5) == 0.5);
