@@ -157,7 +157,7 @@ lint:
 	$(BIN)/python -m nanobind.stubgen -q -m tope._core -o $(BUILD)/_core.pyi
 	diff python/tope/_core.pyi $(BUILD)/_core.pyi  # stale? run: make stubs
 	$(BIN)/cmake -S . -B build/Tidy -G Ninja -DCMAKE_MAKE_PROGRAM=$(abspath $(BIN))/ninja -DTOPE_BUILD_PYTHON=ON \
-	  -DPython_EXECUTABLE=$(abspath $(BIN))/python >/dev/null  # file by file, so that each includes what it uses
+	  -DCMAKE_BUILD_TYPE=Debug -DPython_EXECUTABLE=$(abspath $(BIN))/python >/dev/null  # no unity: each includes what it uses
 	git ls-files 'src/*.cpp' | xargs -P 2 -n 4 $(BIN)/clang-tidy --quiet --warnings-as-errors='*' --extra-arg=-Wno-unknown-warning-option -p build/Tidy
 
 format:

@@ -14,7 +14,7 @@ inline double smooth_step(double x) {
 
 /// The same of each number of a fixed-size array, without branches.
 template <typename Derived>
-typename Derived::PlainObject smooth_step(const Eigen::ArrayBase<Derived>& x) {
+Derived::PlainObject smooth_step(const Eigen::ArrayBase<Derived>& x) {
   const typename Derived::PlainObject within = x.max(0.0).min(1.0);
   return within * within * (3.0 - 2.0 * within);
 }
