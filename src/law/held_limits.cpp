@@ -40,12 +40,7 @@ const Vector& HeldLimits::hold(const Stack& stack, Eigen::Index joint) {
   auto factor = factor_.col(static_cast<Eigen::Index>(joints_.size()));
   factor.setZero();
   double length = 1.0;
-  for (Eigen::Index p = 0; p < PanelMatrix::panels_of(stack.size()); ++p) {
-    set_column(direction_.data(), p, [&](Eigen::Index i) {
-      const Eigen::Index j = height * p + i;
-      return j < stack.size() ? stack.motion(joint, j) : 0.0;
-    });
-  }
+  set_columns(direction_.data(), stack.size(), [&](Eigen::Index j) { return stack.motion(joint, j); });
   if (!stack.motion_is_y) {  // those rows are orthonormal as they are
     multiply(closed_.rows(), direction_.data(), factor.data());
     subtract_transposed_product(closed_.rows(), factor.data(), direction_.data());
@@ -65,7 +60,6 @@ const Vector& HeldLimits::hold(const Stack& stack, Eigen::Index joint) {
 
 void HeldLimits::meet(const Vector& target, Vector& y) {
   const Eigen::Index count = closed_.size();
-  weights_.head(PanelMatrix::padded(count)).setZero();
   for (Eigen::Index i = 0; i < count; ++i) {
     double rest = target[joints_[static_cast<std::size_t>(i)]];
     for (Eigen::Index j = 0; j < i; ++j) {
@@ -73,9 +67,7 @@ void HeldLimits::meet(const Vector& target, Vector& y) {
     }
     weights_[i] = rest / factor_(i, i);
   }
-  for (Eigen::Index p = 0; p < closed_.rows().panels(); ++p) {
-    set_column(weights_.data(), p, [&](Eigen::Index i) { return weights_[height * p + i]; });
-  }
+  set_columns(weights_.data(), count, [&](Eigen::Index i) { return weights_[i]; });
   multiply_transposed(closed_.rows(), weights_.data(), y.data());
 }
 

@@ -381,7 +381,7 @@ void Hierarchy::move() {
 }
 
 /// 1 / g(rho)
-Hierarchy::Column Hierarchy::damped(const Column& rho) const {
+Column Hierarchy::damped(const Column& rho) const {
   const Column deficit = (Column::Ones() - rho / options_.damped_below).cwiseMax(0.0);
   return rho + options_.damped_below * deficit.cwiseProduct(deficit);
 }

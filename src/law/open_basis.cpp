@@ -35,15 +35,15 @@ void OpenBasis::reset(const ClosedRows& closed) {
   reset();
   rows_.resize(0, size());
   for (int i = 0; i < closed.size(); ++i) {
-    if (closed.share(i) >= 1.0) {
+    if (closed.shares()[i] >= 1.0) {
       rows_.append_row(closed.rows(), i);
     }
   }
   close_rows();
   for (int i = 0; i < closed.size(); ++i) {
-    if (closed.share(i) < 1.0) {
+    if (closed.shares()[i] < 1.0) {
       multiply_transposed(open_, row_of(closed.rows(), i), shares_.data());
-      turn_all(shares_.data(), closed.share(i));
+      turn_all(shares_.data(), closed.shares()[i]);
     }
   }
 }

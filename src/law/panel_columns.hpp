@@ -32,6 +32,14 @@ void set_column(double* panel, Eigen::Index j, At at) {
   set_column(panel, j, at(0), at(1), at(2), at(3));
 }
 
+/// Writes `size` numbers, at(0) and so on, and zeros to the end of the last column.
+template <typename At>
+void set_columns(double* out, Eigen::Index size, At at) {
+  for (Eigen::Index p = 0; p < PanelMatrix::panels_of(size); ++p) {
+    set_column(out, p, [&](Eigen::Index k) { return height * p + k < size ? at(height * p + k) : 0.0; });
+  }
+}
+
 /// 1 for row i of a panel, if it has one, and 0 for the others.
 inline Eigen::Map<const Column> unit(Eigen::Index i) {
   static constexpr std::array<double, 7> numbers{0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0};

@@ -37,11 +37,7 @@ void RowSpectrum::decompose(const PanelMatrix& gram, SymmetricEigen& eigen, Pane
   }
   const SymmetricEigen::Solver& solver = eigen.compute(gram);
   const Vector& values = solver.eigenvalues();
-  for (Eigen::Index p = 0; p < gram.panels(); ++p) {
-    set_column(squared_.data(), p, [&](Eigen::Index i) {
-      return height * p + i < values.size() ? std::max(0.0, values[height * p + i]) : 0.0;
-    });
-  }
+  set_columns(squared_.data(), values.size(), [&](Eigen::Index i) { return std::max(0.0, values[i]); });
   vectors.assign_transposed(solver.eigenvectors());
 }
 

@@ -122,32 +122,26 @@ Benchmark benchmark(const Scenario& scenario, const BenchmarkOptions& options) {
   Vector u = Vector::Zero(scenario.robot->nv());
   controller.update(scenario.initial, Vector::Zero(scenario.robot->nv()), 0.0, u);  // starts the references
 
-  Benchmark result{.states = static_cast<int>(states.size())};
   const auto size = static_cast<int>(states.size());
   const int rounds = std::max(1, (options.cycles + size - 1) / size);
+  Benchmark result{.states = size};
   const std::size_t timed = static_cast<std::size_t>(rounds) * states.size();
   result.cycle_us.reserve(timed);
   result.rigid_body_us.reserve(timed);
   result.idle_us.reserve(timed);
-  Microseconds usual{0.0};
-  std::vector<double> warm_up;
-  warm_up.reserve(states.size());
-  for (int round = -1; round < rounds; ++round) {  // the first one warms up
+  const auto go_through = [&](Benchmark& into, Microseconds usual) {
     for (const State& state : states) {
-      const double bare = timed_us([&] { terms.evaluate(state.q, state.v); });
-      const double cycle = timed_us([&] { controller.update(state.q, state.v, state.t, u); });
-      if (round < 0) {
-        warm_up.push_back(cycle);
-      } else {
-        result.rigid_body_us.push_back(bare);
-        result.cycle_us.push_back(cycle);
-        result.idle_us.push_back(timed_us([usual] { wait(usual); }));
-      }
-      result.largest_laws = std::max(result.largest_laws, controller.status().laws);
+      into.rigid_body_us.push_back(timed_us([&] { terms.evaluate(state.q, state.v); }));
+      into.cycle_us.push_back(timed_us([&] { controller.update(state.q, state.v, state.t, u); }));
+      into.idle_us.push_back(timed_us([usual] { wait(usual); }));
+      into.largest_laws = std::max(into.largest_laws, controller.status().laws);
     }
-    if (round < 0) {
-      usual = Microseconds(median(warm_up));
-    }
+  };
+  Benchmark warm_up;
+  go_through(warm_up, Microseconds(0.0));
+  const Microseconds usual(median(warm_up.cycle_us));
+  for (int round = 0; round < rounds; ++round) {
+    go_through(result, usual);
   }
   return result;
 }

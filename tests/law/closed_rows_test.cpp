@@ -98,12 +98,12 @@ BOOST_AUTO_TEST_CASE(take_shares_and_leave_a_basis) {
       const Matrix q = dense(closed.rows());
       Matrix by_rows = Matrix::Identity(n, n);
       for (int i = 0; i < closed.size(); ++i) {
-        by_rows -= closed.share(i) * q.row(i).transpose() * q.row(i);
+        by_rows -= closed.shares()[i] * q.row(i).transpose() * q.row(i);
       }
       BOOST_TEST((by_rows - half).norm() <= 1e-11);
       const int rows = closed.size();
       closed.close(random.vector(n).data());
-      BOOST_TEST(closed.share(rows) == 1.0);
+      BOOST_TEST(closed.shares()[rows] == 1.0);
       BOOST_TEST(closed.open() == n - first.rows() - 2);
       closed.keep(rows);
       BOOST_TEST((dense(closed.rows()) - q).norm() == 0.0);

@@ -24,8 +24,7 @@ class ClosedRows {
   int open() const { return static_cast<int>(rows_.cols()) - whole_; }
   bool shared() const { return whole_ < size(); }    ///< some row is not taken whole
   const PanelMatrix& rows() const { return rows_; }  ///< Q
-  double share(int row) const { return shares_[row]; }
-  const Vector& shares() const { return shares_; }  ///< (k, padded with any numbers)
+  const Vector& shares() const { return shares_; }   ///< sigma (k, padded with any numbers)
 
   /// out = A N (m x n), where no row is shared.
   void project(const PanelMatrix& a, PanelMatrix& out);

@@ -38,7 +38,6 @@ class Hierarchy final : public StackLaw {
   void solve(const Stack& stack, const Selection& selection, const Vector& limit_target, Solution& solution);
 
  private:
-  using Column = PanelMatrix::Column;
   /// A level's tasks.
   struct Range {
     std::size_t first = 0;
@@ -66,7 +65,7 @@ class Hierarchy final : public StackLaw {
   void minimise_damped(RowSpectrum& spectrum, const PanelMatrix& rows);
   void close_shares(const RowSpectrum& spectrum);
   void move();
-  Column damped(const Column& rho) const;
+  PanelMatrix::Column damped(const PanelMatrix::Column& rho) const;
 
   Options options_;
   std::vector<Range> ranges_;

@@ -112,7 +112,7 @@ class Task {
   Vector acceleration_;
   Vector served_;  // of rate_ or acceleration_, what the last motion gave
   Reference reference_;
-  std::optional<double> duration_;  // of reference_
+  std::optional<double> duration_;  // of reference_, asked for in every cycle
   double last_time_ = 0.0;
   bool started_ = false;
   bool second_order_ = false;
